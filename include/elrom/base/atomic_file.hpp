@@ -1,0 +1,49 @@
+#pragma once
+// A file that appears whole or not at all: written beside its target, synced, renamed, directory synced.
+
+#include <filesystem>
+#include <string_view>
+
+namespace elrom::base {
+
+/// Owns the temporary path until commit(); without commit the temporary is removed and the target is untouched.
+/// The temporary lies in the target's folder (rename must not cross file systems) and is named
+/// ".<target>.<process id>.<n>.tmp", so two writers never share one.
+class AtomicFile {
+ public:
+  /// @param durable false leaves out the fsyncs (cheap to make again: predictions); the rename stays
+  /// @throws SystemError when the folder does not exist or is not writable
+  explicit AtomicFile(std::filesystem::path target, bool durable = true);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+  /// The writer has closed the temporary; makes it the target. @throws SystemError
+  void commit();
+
+ private:
+  std::filesystem::path target_, temporary_;
+  bool durable_;
+  bool committed_ = false;
+};
+
+/// Whole text as `target`, atomically.
+void write_text(const std::filesystem::path& target, std::string_view text);
+/// @throws InputError when it cannot be read
+[[nodiscard]] std::string read_text(const std::filesystem::path& path);
+
+/// Holds an advisory lock (flock) on `path` for as long as it lives, so that two processes never work in one study or
+/// on one store. @throws UsageError at once when another process holds it
+class FileLock {
+ public:
+  explicit FileLock(const std::filesystem::path& path);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace elrom::base

@@ -1,0 +1,31 @@
+#pragma once
+// The nine fields of a case: their names, units and physical bounds.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace elrom::field {
+
+/// What kind of quantity a field is under a mirror image.
+enum class Parity { scalar, vector_x, vector_y, vector_z };
+
+struct FieldInfo {
+  std::string name;         ///< "solid_velocity_x"
+  std::string meaning;
+  std::string unit;         ///< SI: "m/s", "Pa", "m", "1"
+  Parity parity = Parity::scalar;
+  std::optional<double> lower, upper;  ///< physical bounds, in `unit`; lower of diameter is exclusive
+};
+
+/// Packing limit of spheres in the source's EL3D: no time-averaged solid volume fraction lies above it.
+inline constexpr double packing_limit = 0.65;
+
+/// The nine fields in the order of design.md section 1 (velocities of solids, of gas, pressure, diameter, fraction).
+[[nodiscard]] std::span<const FieldInfo> standard_fields();
+/// Information on a field by name; an unknown name gives a scalar without bounds in `unit`.
+[[nodiscard]] FieldInfo field_info(std::string_view name, std::string_view unit = "1");
+
+}  // namespace elrom::field

@@ -1,0 +1,101 @@
+#pragma once
+// Tensor files in the safetensors layout: u64 little-endian header length, JSON header, raw little-endian tensors.
+// The reader maps the file and copies nothing. Every tensor's SHA-256 is kept in `__metadata__` under "sha256:<name>",
+// and the digest of all other metadata and of the shapes under "sha256:header", so a flipped byte is always found.
+//
+// Non-goals: compression, editing in place, other byte orders.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "elrom/math/matrix.hpp"
+
+namespace elrom::io {
+
+enum class DType { f16, f32, f64, i32, i64, u8 };
+[[nodiscard]] std::size_t size_of(DType type);
+[[nodiscard]] std::string_view name_of(DType type);  ///< "F16", "F32", ... as in the file
+
+/// An immutable n-d array, row-major; shares ownership of its bytes (a mapped file or a vector). Cheap to copy.
+/// Thread rule: const use from any thread.
+class Tensor {
+ public:
+  Tensor() = default;
+  Tensor(DType type, std::vector<std::size_t> shape, std::shared_ptr<const void> owner, const std::byte* data);
+
+  [[nodiscard]] static Tensor copy(const MatrixF& values);
+  [[nodiscard]] static Tensor copy(const MatrixD& values);
+  [[nodiscard]] static Tensor copy(std::span<const float> values, std::vector<std::size_t> shape);
+  [[nodiscard]] static Tensor copy(std::span<const double> values, std::vector<std::size_t> shape);
+  [[nodiscard]] static Tensor copy(std::span<const std::int32_t> values, std::vector<std::size_t> shape);
+  [[nodiscard]] static Tensor copy(std::span<const std::uint8_t> values, std::vector<std::size_t> shape);
+
+  [[nodiscard]] DType type() const { return type_; }
+  [[nodiscard]] const std::vector<std::size_t>& shape() const { return shape_; }
+  [[nodiscard]] std::size_t size() const;  ///< number of values
+  [[nodiscard]] bool empty() const { return data_ == nullptr; }
+  [[nodiscard]] std::span<const std::byte> bytes() const;
+  /// Values of exactly that type. @throws InputError for another type
+  [[nodiscard]] std::span<const float> f32() const;
+  [[nodiscard]] std::span<const double> f64() const;
+  [[nodiscard]] std::span<const std::int32_t> i32() const;
+  [[nodiscard]] std::span<const std::uint8_t> u8() const;
+  /// Rank 2 (or rank 1 as one row) as a matrix view. @throws InputError for another rank or type
+  [[nodiscard]] ConstMapF matrix() const;
+  [[nodiscard]] Eigen::Map<const MatrixD> matrix64() const;
+
+ private:
+  DType type_ = DType::f32;
+  std::vector<std::size_t> shape_;
+  std::shared_ptr<const void> owner_;
+  const std::byte* data_ = nullptr;
+};
+
+/// A set of named tensors and named texts, in memory or in a mapped file.
+class TensorFile {
+ public:
+  TensorFile() = default;
+  /// Maps `path`; checks the whole header (no duplicate names, overlaps, holes, overflow; header <= 100 MB) and its
+  /// digest, but reads no tensor. @throws InputError naming the file, what was found and what was expected
+  [[nodiscard]] static TensorFile open(const std::filesystem::path& path);
+
+  [[nodiscard]] bool has(std::string_view name) const { return tensors_.contains(std::string(name)); }
+  [[nodiscard]] const std::map<std::string, Tensor>& tensors() const { return tensors_; }
+  /// @throws InputError naming file and tensor when it is not there (with the nearest name)
+  [[nodiscard]] const Tensor& tensor(std::string_view name) const;
+  /// The same, with its shape checked; 0 in `shape` stands for any size.
+  [[nodiscard]] const Tensor& tensor(std::string_view name, std::span<const std::size_t> shape) const;
+  [[nodiscard]] const std::map<std::string, std::string>& texts() const { return texts_; }
+  [[nodiscard]] bool has_text(std::string_view key) const { return texts_.contains(std::string(key)); }
+  [[nodiscard]] const std::string& text(std::string_view key) const;
+
+  void set(std::string name, Tensor tensor) { tensors_.insert_or_assign(std::move(name), std::move(tensor)); }
+  void set_text(std::string key, std::string text) { texts_.insert_or_assign(std::move(key), std::move(text)); }
+
+  /// Compares the digest of one tensor, or of all. @throws InputError naming file and tensor
+  void verify(std::string_view name) const;
+  void verify_all(int n_threads = 1) const;
+
+  /// Atomically; tensors in name order, each 64-byte aligned by padding its predecessor's place in the header with
+  /// spaces. The same content gives the same bytes.
+  void write(const std::filesystem::path& path) const;
+
+  [[nodiscard]] const std::string& where() const { return where_; }  ///< path, for messages
+  /// SHA-256 over the header (which holds every tensor's digest); empty for a set that was never written or read.
+  [[nodiscard]] const std::string& digest() const { return digest_; }
+
+ private:
+  std::map<std::string, Tensor> tensors_;
+  std::map<std::string, std::string> texts_;
+  std::string where_ = "memory";
+  mutable std::string digest_;
+};
+
+}  // namespace elrom::io

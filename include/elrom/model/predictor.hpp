@@ -1,0 +1,56 @@
+#pragma once
+// All fields of a case, or only what is asked: the library's front door for C++ callers.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "elrom/field/boundary_conditions.hpp"
+#include "elrom/model/bundle.hpp"
+
+namespace elrom::model {
+
+/// What to load and compute; empty lists stand for all.
+struct Selection {
+  std::vector<std::string> fields;
+  std::vector<std::int32_t> planes;    ///< ascending
+  bool best_build_only = false;
+  std::optional<double> interval_level;  ///< half-widths of the prediction interval are computed when set
+  bool verify = true;                    ///< compare digests of what is read
+};
+
+/// Thread rule: const use from any number of threads, each with a Scratch of its own.
+class Predictor {
+ public:
+  /// Loads just the models that `selection` names. @throws InputError, UsageError (unknown field or plane)
+  explicit Predictor(const std::filesystem::path& bundle, Selection selection = {});
+  ~Predictor();
+  Predictor(Predictor&&) noexcept;
+
+  struct Scratch {
+    std::vector<Workspace> workspaces;  ///< one a thread
+  };
+
+  [[nodiscard]] const BundleReader& bundle() const;
+  [[nodiscard]] const std::vector<field::FieldInfo>& fields() const;   ///< selected, in the bundle's order
+  [[nodiscard]] std::span<const std::int32_t> planes() const;          ///< selected
+  [[nodiscard]] std::size_t n_columns() const;
+  /// Values of one case: fields() x planes() x n_columns.
+  [[nodiscard]] std::size_t size() const { return fields().size() * planes().size() * n_columns(); }
+
+  /// @param inputs SI, in the bundle's schema order, (n_inputs)
+  /// @param values (size()), field by field, SI, inside the fields' physical bounds
+  /// @param half_width (size()) when interval_level is set, else empty
+  /// @throws NumericalError when an input is not finite
+  void predict(std::span<const double> inputs, std::span<float> values, std::span<float> half_width, Scratch& scratch,
+               int n_threads = 1) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace elrom::model

@@ -1,0 +1,60 @@
+#pragma once
+// A method learns one field from cases and gives back a model::FieldModel; networks and peers alike.
+
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "elrom/base/log.hpp"
+#include "elrom/base/random.hpp"
+#include "elrom/field/boundary_conditions.hpp"
+#include "elrom/field/mesh.hpp"
+#include "elrom/field/symmetry.hpp"
+#include "elrom/model/field_model.hpp"
+
+namespace elrom::study {
+
+/// What all fields of a study share.
+struct CaseSet {
+  field::Mesh mesh;
+  field::InputSchema schema;
+  std::vector<std::string> names;     //!< (n_cases)
+  std::vector<double> loads;          //!< (n_cases)
+  MatrixD inputs;                     //!< SI, (n_cases, n_inputs)
+  std::vector<field::Mirror> mirrors; ///< declared and switched on; empty: none
+  [[nodiscard]] std::size_t n_cases() const { return names.size(); }
+};
+
+/// One field of all cases of a study; one is resident at a time.
+struct FieldData {
+  const CaseSet* cases = nullptr;
+  field::FieldInfo info;
+  MatrixF values;  //!< SI, (n_cases, n_cells)
+};
+
+struct FitContext {
+  base::Seed seed{1};
+  int n_threads = 1;
+  Log* log = &silent_log();
+  std::stop_token stop;
+};
+
+/// Groups of case rows that leave the training set together in cross-validation (neighbouring loads do not leak).
+using Folds = std::vector<std::vector<std::size_t>>;
+
+/// Thread rule: const use from one thread at a time; n_threads of the context is used inside.
+class Method {
+ public:
+  virtual ~Method() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// Learns from the rows `cases` of `data` alone.
+  [[nodiscard]] virtual std::unique_ptr<model::FieldModel> fit(const FieldData& data, std::span<const std::size_t> cases,
+                                                               const FitContext& context) const = 0;
+  /// Predictions for every case in `folds` by models that did not see its fold, (n_cases, n_cells) with rows of cases
+  /// in no fold left zero. The default fits once a fold; methods with a closed form override it.
+  [[nodiscard]] virtual MatrixF cross_predict(const FieldData& data, const Folds& folds, const FitContext& context) const;
+};
+
+}  // namespace elrom::study

@@ -1,0 +1,67 @@
+#include "elrom/base/app.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <thread>
+
+#include "elrom/base/error.hpp"
+
+namespace elrom::base {
+namespace {
+
+int report(std::string_view program, std::string_view message, ExitStatus status) {
+  fmt::print(stderr, "{}: error: {}\n", program, message);
+  return static_cast<int>(status);
+}
+
+volatile std::sig_atomic_t interrupted = 0;
+
+extern "C" void on_interrupt(int signal) {
+  if (interrupted != 0) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+  interrupted = 1;
+}
+
+}  // namespace
+
+int run_app(std::string_view program, const std::function<int()>& body) noexcept {
+  try {
+    return body();
+  } catch (const Error& error) {
+    return report(program, error.what(), error.status());
+  } catch (const std::bad_alloc&) {
+    return report(program, "out of memory; ask for fewer fields, cases or builds at a time", ExitStatus::internal);
+  } catch (const std::exception& error) {
+    return report(program, error.what(), ExitStatus::internal);
+  } catch (...) {
+    return report(program, "unknown failure", ExitStatus::internal);
+  }
+}
+
+std::stop_token interrupt_token() {
+  // A signal handler may not request a stop (it takes locks), so a small watcher thread does.
+  static std::stop_source source;
+  static std::jthread watcher = [] {
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    return std::jthread([](const std::stop_token& end) {
+      while (!end.stop_requested()) {
+        if (interrupted != 0) {
+          source.request_stop();
+          return;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      }
+    });
+  }();
+  return source.get_token();
+}
+
+}  // namespace elrom::base

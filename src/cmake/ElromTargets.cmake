@@ -1,0 +1,73 @@
+# One function makes a component's library: strict warnings, C++20, and the shared compile options.
+find_program(ELROM_CCACHE ccache)
+if(ELROM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  # ccache accepts precompiled headers only when told that their time stamps do not matter.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${ELROM_CCACHE})
+endif()
+
+function(elrom_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
+                         -Wno-restrict)  # GCC 12 false alarm in std::string (its bug 105329)
+  if(ELROM_NATIVE)
+    # Public: Eigen's alignment follows the instruction set, and must be the same in every object of a program.
+    target_compile_options(${target} PUBLIC $<BUILD_INTERFACE:-march=native>)
+  endif()
+  if(ELROM_SANITIZE)
+    target_compile_options(${target} PUBLIC $<BUILD_INTERFACE:-fsanitize=${ELROM_SANITIZE}> $<BUILD_INTERFACE:-fno-omit-frame-pointer>)
+    target_link_options(${target} PUBLIC $<BUILD_INTERFACE:-fsanitize=${ELROM_SANITIZE}>)
+  endif()
+endfunction()
+
+# elrom_library(name SOURCES ... LINKS ... PRIVATE_LINKS ...) -> target elrom-<name>, alias elrom::<name>, installed with component <name>.
+function(elrom_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  if(NOT ARG_SOURCES)
+    file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/empty-${name}.cpp "")
+    set(ARG_SOURCES ${CMAKE_CURRENT_BINARY_DIR}/empty-${name}.cpp)
+  endif()
+  add_library(elrom-${name} STATIC ${ARG_SOURCES})
+  add_library(elrom::${name} ALIAS elrom-${name})
+  set_target_properties(elrom-${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(elrom-${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_link_libraries(elrom-${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
+  elrom_compile_options(elrom-${name})
+  install(TARGETS elrom-${name} EXPORT elrom-${name}-targets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
+  install(EXPORT elrom-${name}-targets NAMESPACE elrom:: DESTINATION lib/cmake/elrom)
+endfunction()
+
+# elrom_program(elrom-xyz SOURCES ... LINKS ...) -> <build>/bin/elrom-xyz, installed to bin.
+function(elrom_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  list(GET ARG_SOURCES 0 first_source)
+  if(NOT first_source OR NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${first_source} AND NOT EXISTS ${first_source})
+    return()
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS})
+  elrom_compile_options(${name})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()
+
+# elrom_test(path/to/file_test.cpp LINKS ...) -> one executable with one CTest entry a test case.
+# Slow or statistical work belongs into tests/benchmark, which CTest does not run.
+function(elrom_test source)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "LINKS" ${ARGN})
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/tests OUTPUT_VARIABLE folder)
+  string(REGEX REPLACE "_test\\.cpp$" "" stem ${source})
+  string(REPLACE "/" "-" name "test-${folder}-${stem}")
+  add_executable(${name} ${source})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS} GTest::gmock GTest::gtest_main)
+  elrom_compile_options(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${name} PRIVATE ELROM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ELROM_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+  add_test(NAME ${folder}/${stem} COMMAND ${name})
+  set_tests_properties(${folder}/${stem} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+endfunction()
