@@ -37,7 +37,8 @@ int run_app(std::string_view program, const std::function<int()>& body) noexcept
   } catch (const Error& error) {
     return report(program, error.what(), error.status());
   } catch (const std::bad_alloc&) {
-    return report(program, "out of memory; ask for fewer fields, cases or builds at a time", ExitStatus::internal);
+    return report(program, "out of memory; ask for fewer fields, cases or builds at a time",
+                  ExitStatus::internal);
   } catch (const std::exception& error) {
     return report(program, error.what(), ExitStatus::internal);
   } catch (...) {

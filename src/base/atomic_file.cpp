@@ -33,7 +33,8 @@ void sync(const std::filesystem::path& path, int flags) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path target, bool durable) : target_(std::move(target)), durable_(durable) {
+AtomicFile::AtomicFile(std::filesystem::path target, bool durable)
+    : target_(std::move(target)), durable_(durable) {
   static std::atomic<int> counter{0};
   const auto folder = folder_of(target_);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) throw system_error("cannot write into folder", folder);
@@ -79,7 +80,8 @@ FileLock::FileLock(const std::filesystem::path& path)
   const auto failure = system_error("cannot lock", path);
   ::close(descriptor_);
   if (!held) throw failure;
-  throw UsageError({.what = "another process is at work here", .where = folder_of(path).string(),
+  throw UsageError({.what = "another process is at work here",
+                    .where = folder_of(path).string(),
                     .advice = "wait for it to end, or stop it"});
 }
 

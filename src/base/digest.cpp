@@ -1,5 +1,5 @@
-// The one-shot SHA256_* functions are marked old in OpenSSL 3, in favour of EVP, which loads providers and costs
-// milliseconds at the start of a program that has thirty; they are the same code underneath.
+// The one-shot SHA256_* functions are marked old in OpenSSL 3, in favour of EVP, which loads providers and
+// costs milliseconds at the start of a program that has thirty; they are the same code underneath.
 #define OPENSSL_SUPPRESS_DEPRECATED
 #include "elrom/base/digest.hpp"
 

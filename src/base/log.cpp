@@ -42,7 +42,8 @@ class ConsoleLog final : public Log {
     const auto pause = live_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000);
     if (!finished && (is_new || now - task.shown < pause)) return;
     task.shown = now;
-    const std::string line = describe(progress, std::chrono::duration<double>(now - task.begin).count(), finished);
+    const std::string line =
+        describe(progress, std::chrono::duration<double>(now - task.begin).count(), finished);
     if (live_ && !finished) {
       fmt::print(stderr, "\r\033[K{}", line);
       std::fflush(stderr);

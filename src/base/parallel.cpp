@@ -40,7 +40,9 @@ void parallel_for(std::size_t n, int n_threads, const std::function<void(std::si
     }
   };
   {
-    const auto helpers = std::min<std::size_t>(static_cast<std::size_t>(std::max(1, n_threads)), std::max<std::size_t>(n, 1)) - 1;
+    const auto helpers =
+        std::min<std::size_t>(static_cast<std::size_t>(std::max(1, n_threads)), std::max<std::size_t>(n, 1)) -
+        1;
     std::vector<std::jthread> threads;
     threads.reserve(helpers);
     for (std::size_t k = 0; k < helpers; ++k) threads.emplace_back(run, static_cast<int>(k) + 1);

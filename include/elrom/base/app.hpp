@@ -10,7 +10,8 @@ namespace elrom::base {
 /// Runs `body`; catches everything. Prints "<program>: error: <message>". @return exit status
 int run_app(std::string_view program, const std::function<int()>& body) noexcept;
 
-/// Requested at the first SIGINT or SIGTERM (a second one ends the process at once). Installs the handlers on first call.
+/// Requested at the first SIGINT or SIGTERM (a second one ends the process at once). Installs the handlers on
+/// first call.
 [[nodiscard]] std::stop_token interrupt_token();
 
 }  // namespace elrom::base

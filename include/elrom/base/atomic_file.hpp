@@ -6,8 +6,8 @@
 
 namespace elrom::base {
 
-/// Owns the temporary path until commit(); without commit the temporary is removed and the target is untouched.
-/// The temporary lies in the target's folder (rename must not cross file systems) and is named
+/// Owns the temporary path until commit(); without commit the temporary is removed and the target is
+/// untouched. The temporary lies in the target's folder (rename must not cross file systems) and is named
 /// ".<target>.<process id>.<n>.tmp", so two writers never share one.
 class AtomicFile {
  public:
@@ -33,8 +33,8 @@ void write_text(const std::filesystem::path& target, std::string_view text);
 /// @throws InputError when it cannot be read
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
-/// Holds an advisory lock (flock) on `path` for as long as it lives, so that two processes never work in one study or
-/// on one store. @throws UsageError at once when another process holds it
+/// Holds an advisory lock (flock) on `path` for as long as it lives, so that two processes never work in one
+/// study or on one store. @throws UsageError at once when another process holds it
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& path);

@@ -21,8 +21,9 @@ class Sha256 {
   /// Length-prefixed, so that ("ab", "c") and ("a", "bc") differ.
   Sha256& add(std::string_view text);
   template <class T>
-    requires std::is_arithmetic_v<T>
-  Sha256& add_value(T value) { return add(std::as_bytes(std::span(&value, 1))); }
+  requires std::is_arithmetic_v<T> Sha256& add_value(T value) {
+    return add(std::as_bytes(std::span(&value, 1)));
+  }
   /// 64 hexadecimal digits; ends the object's use.
   [[nodiscard]] std::string hex();
 

@@ -12,11 +12,11 @@ enum class Level { detail, info, warning };
 
 /// A piece of long work as the user sees it.
 struct Progress {
-  std::string task;          ///< "screen pressure"
+  std::string task;  ///< "screen pressure"
   std::int64_t done = 0;
-  std::int64_t total = 0;    ///< 0: not known
-  std::string unit = {};     ///< "columns", "trials"
-  std::string best = {};     ///< best value so far, ready to print; empty: none
+  std::int64_t total = 0;  ///< 0: not known
+  std::string unit = {};   ///< "columns", "trials"
+  std::string best = {};   ///< best value so far, ready to print; empty: none
 };
 
 /// Thread rule: every member may be called from any thread.
@@ -35,7 +35,8 @@ class Log {
 /// Swallows everything; for tests and for callers who do not care.
 Log& silent_log();
 
-/// To standard error: a live line with rate and remaining time on a terminal, plain lines every few seconds otherwise.
+/// To standard error: a live line with rate and remaining time on a terminal, plain lines every few seconds
+/// otherwise.
 /// @param lowest messages below this level are dropped
 std::unique_ptr<Log> make_console_log(Level lowest = Level::info);
 

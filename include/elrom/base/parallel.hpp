@@ -1,6 +1,6 @@
 #pragma once
-// Independent pieces of work on a given number of threads. No pool, no spinning: threads live as long as one call, so
-// a busy neighbour on the machine costs its share of the processor and no more.
+// Independent pieces of work on a given number of threads. No pool, no spinning: threads live as long as one
+// call, so a busy neighbour on the machine costs its share of the processor and no more.
 
 #include <cstddef>
 #include <functional>

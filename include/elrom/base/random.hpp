@@ -1,6 +1,6 @@
 #pragma once
-// Reproducible randomness: every consumer derives its own stream from a name, so adding a consumer changes no other.
-// Distributions are written here because the standard leaves theirs to the library's maker.
+// Reproducible randomness: every consumer derives its own stream from a name, so adding a consumer changes no
+// other. Distributions are written here because the standard leaves theirs to the library's maker.
 
 #include <cstdint>
 #include <string_view>

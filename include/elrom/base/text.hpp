@@ -13,7 +13,8 @@ namespace elrom::base {
 [[nodiscard]] std::string join(const std::vector<std::string>& parts, std::string_view separator);
 
 /// The candidate nearest to `name` by edit distance, when near enough to be a likely slip of the pen.
-[[nodiscard]] std::optional<std::string> closest_name(std::string_view name, const std::vector<std::string>& candidates);
+[[nodiscard]] std::optional<std::string> closest_name(std::string_view name,
+                                                      const std::vector<std::string>& candidates);
 
 /// "did you mean 'x'?" or, without a near name, "known are: a, b, c" (at most ten are listed).
 [[nodiscard]] std::string name_advice(std::string_view name, const std::vector<std::string>& candidates);

@@ -9,8 +9,8 @@ namespace elrom::base {
 
 /// value_SI = value * factor + offset
 struct Unit {
-  std::string symbol;    ///< "t/h"
-  std::string si;        ///< "kg/s": the SI unit of the same dimension
+  std::string symbol;  ///< "t/h"
+  std::string si;      ///< "kg/s": the SI unit of the same dimension
   double factor = 1;
   double offset = 0;
 
