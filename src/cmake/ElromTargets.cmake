@@ -10,7 +10,8 @@ endif()
 function(elrom_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
-                         -Wno-restrict)  # GCC 12 false alarm in std::string (its bug 105329)
+                         -Wno-restrict  # GCC 12 false alarm in std::string (its bug 105329)
+                         -Wno-maybe-uninitialized)  # and in its AVX-512 intrinsics, through Eigen (its bug 105593)
   if(ELROM_NATIVE)
     # Public: Eigen's alignment follows the instruction set, and must be the same in every object of a program.
     target_compile_options(${target} PUBLIC $<BUILD_INTERFACE:-march=native>)

@@ -1,6 +1,7 @@
 #pragma once
 // Forward pass of a multilayer perceptron; weights are views into a bundle or owned by the trainer's result.
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,8 +18,8 @@ enum class Activation { relu, tanh, silu };
 [[nodiscard]] Activation activation_of(std::string_view name);
 
 struct Layer {
-  io::Tensor weights;  //!< (n_out, n_in)
-  io::Tensor bias;     //!< (n_out)
+  io::Tensor weights;  //!< (n_out, n_in), float32, or float16 to halve a bundle
+  io::Tensor bias;     //!< (n_out), float32
 };
 
 /// y = W_L a(... a(W_1 x + b_1) ...) + b_L; the activation follows every layer but the last.
@@ -34,13 +35,28 @@ class Network {
   [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
   [[nodiscard]] Activation activation() const { return activation_; }
 
-  /// @param x (n, n_inputs) @param y (n, n_outputs). A row's result does not depend on the other rows, to the bit.
+  /// @param x (n, n_inputs) @param y (n, n_outputs). A row's result does not depend on the other rows, to the
+  /// bit.
   void forward(const Eigen::Ref<const MatrixF>& x, Eigen::Ref<MatrixF> y, Workspace& workspace) const;
+
+  /// The same for rows whose first inputs are equal (the planes of one case): their part of the first layer
+  /// is computed once. Works on transposed rows, padded to a multiple of 16; what the padding holds only has
+  /// to be finite. A row's result equals to the bit for any number and order of rows.
+  /// @param shared first inputs, (n_shared), n_shared <= n_inputs
+  /// @param own the other inputs, (n_inputs - n_shared, padded n_rows), 64-byte aligned
+  /// @return (n_outputs, padded n_rows), in the workspace: valid until the caller's Frame ends
+  [[nodiscard]] std::span<const float> forward_shared(std::span<const float> shared,
+                                                      std::span<const float> own, std::size_t n_rows,
+                                                      Workspace& workspace) const;
 
   void save(io::TensorFile& file, const std::string& prefix) const;
   [[nodiscard]] static Network load(const io::TensorFile& file, const std::string& prefix);
 
  private:
+  /// Bias plus the shared inputs' part of the first layer, (n_out of layer 1)
+  [[nodiscard]] std::span<const float> first_layer_start(std::span<const float> shared,
+                                                         Workspace& workspace) const;
+
   std::vector<Layer> layers_;
   Activation activation_ = Activation::relu;
 };

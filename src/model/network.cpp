@@ -1,0 +1,170 @@
+#include "elrom/model/network.hpp"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "dense_kernel.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+
+namespace elrom::model {
+namespace {
+
+/// Rows of one pass: the activations of a pass stay in the second-level cache.
+constexpr std::size_t block_rows = 5 * lane;
+
+constexpr std::array<std::pair<std::string_view, Activation>, 3> activations{
+    {{"relu", Activation::relu}, {"tanh", Activation::tanh}, {"silu", Activation::silu}}};
+
+std::string shape_text(const io::Tensor& tensor) {
+  std::vector<std::string> sizes;
+  for (const auto size : tensor.shape()) sizes.push_back(std::to_string(size));
+  return "(" + base::join(sizes, ", ") + ")";
+}
+
+void require(bool fits, std::size_t i_layer, const std::string& found, const std::string& expected) {
+  if (!fits)
+    throw InputError(
+        {"network does not fit together", "layer " + std::to_string(i_layer + 1), found, expected});
+}
+
+void check_layer(const Layer& layer, std::size_t i_layer) {
+  const auto& w = layer.weights;
+  const bool rank_two = w.shape().size() == 2 && w.shape()[0] > 0 && w.shape()[1] > 0;
+  require(rank_two, i_layer, "weights of shape " + shape_text(w), "(n_out, n_in)");
+  require(w.type() == io::DType::f32 || w.type() == io::DType::f16, i_layer,
+          "weights of type " + std::string(io::name_of(w.type())), "F32 or F16");
+  require(
+      layer.bias.type() == io::DType::f32 && layer.bias.size() == w.shape()[0], i_layer,
+      "bias of shape " + shape_text(layer.bias) + " and type " + std::string(io::name_of(layer.bias.type())),
+      std::to_string(w.shape()[0]) + " values of type F32");
+}
+
+}  // namespace
+
+std::string_view name_of(Activation activation) {
+  for (const auto& [name, value] : activations)
+    if (value == activation) return name;
+  throw std::logic_error("activation without a name");
+}
+
+Activation activation_of(std::string_view name) {
+  std::vector<std::string> known;
+  for (const auto& [known_name, value] : activations) {
+    if (known_name == name) return value;
+    known.emplace_back(known_name);
+  }
+  throw InputError({"unknown activation", {}, std::string(name), {}, base::name_advice(name, known)});
+}
+
+Network::Network(std::vector<Layer> layers, Activation activation)
+    : layers_(std::move(layers)), activation_(activation) {
+  if (layers_.empty()) throw InputError(Problem{"network without layers"});
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    check_layer(layers_[i], i);
+    if (i == 0) continue;
+    const auto produced = layers_[i - 1].weights.shape()[0];
+    require(layers_[i].weights.shape()[1] == produced, i,
+            "weights of shape " + shape_text(layers_[i].weights),
+            std::to_string(produced) + " inputs, the outputs of the layer before");
+  }
+}
+
+std::size_t Network::n_inputs() const { return layers_.empty() ? 0 : layers_.front().weights.shape()[1]; }
+std::size_t Network::n_outputs() const { return layers_.empty() ? 0 : layers_.back().weights.shape()[0]; }
+
+std::span<const float> Network::forward_shared(std::span<const float> shared, std::span<const float> own,
+                                               std::size_t n_rows, Workspace& workspace) const {
+  const std::size_t stride = padded(n_rows);
+  check(!layers_.empty() && shared.size() <= n_inputs(), "a network with enough inputs");
+  check(own.size() == (n_inputs() - shared.size()) * stride,
+        "own inputs are (n_inputs - n_shared, padded rows)");
+  std::size_t widest = 0;
+  for (const auto& layer : layers_) widest = std::max(widest, layer.weights.shape()[0]);
+  std::span<float> from = workspace.floats(widest * stride), to = workspace.floats(widest * stride);
+
+  const auto& first = layers_.front();
+  const std::span<const float> start = first_layer_start(shared, workspace);
+  dense({&first.weights, shared.size(), n_inputs() - shared.size()}, own.data(), stride, start.data(),
+        to.data(), workspace);
+  for (std::size_t i = 1; i < layers_.size(); ++i) {
+    const auto& layer = layers_[i];
+    activate(activation_, to.data(), layers_[i - 1].weights.shape()[0] * stride);
+    std::swap(from, to);
+    dense({&layer.weights, 0, layer.weights.shape()[1]}, from.data(), stride, layer.bias.f32().data(),
+          to.data(), workspace);
+  }
+  return to.first(n_outputs() * stride);
+}
+
+std::span<const float> Network::first_layer_start(std::span<const float> shared, Workspace& workspace) const {
+  const auto& first = layers_.front();
+  const std::span<const float> bias = first.bias.f32();
+  if (shared.empty()) return bias;
+  const std::span<float> start = workspace.floats(bias.size());
+  const Workspace::Frame frame(workspace);
+  // The shared inputs as one padded row: the same kernel and so the same order of additions as for any other
+  // row.
+  const std::span<float> row = workspace.floats(shared.size() * lane),
+                         sums = workspace.floats(bias.size() * lane);
+  std::fill(row.begin(), row.end(), 0.0F);
+  for (std::size_t k = 0; k < shared.size(); ++k) row[k * lane] = shared[k];
+  dense({&first.weights, 0, shared.size()}, row.data(), lane, bias.data(), sums.data(), workspace);
+  for (std::size_t o = 0; o < bias.size(); ++o) start[o] = sums[o * lane];
+  return start;
+}
+
+void Network::forward(const Eigen::Ref<const MatrixF>& x, Eigen::Ref<MatrixF> y, Workspace& workspace) const {
+  check(static_cast<std::size_t>(x.cols()) == n_inputs(), "as many columns of x as the network has inputs");
+  check(static_cast<std::size_t>(y.cols()) == n_outputs() && y.rows() == x.rows(),
+        "y is (rows of x, n_outputs)");
+  const auto n = static_cast<std::size_t>(x.rows());
+  for (std::size_t first = 0; first < n; first += block_rows) {
+    const std::size_t rows = std::min(block_rows, n - first);
+    const auto stride = static_cast<Eigen::Index>(padded(rows)), count = static_cast<Eigen::Index>(rows);
+    const Workspace::Frame frame(workspace);
+    const std::span<float> own = workspace.floats(n_inputs() * padded(rows));
+    MapF transposed(own.data(), x.cols(), stride);
+    transposed.leftCols(count) = x.middleRows(static_cast<Eigen::Index>(first), count).transpose();
+    transposed.rightCols(stride - count).setZero();
+    const auto out = forward_shared({}, own, rows, workspace);
+    y.middleRows(static_cast<Eigen::Index>(first), count) =
+        ConstMapF(out.data(), y.cols(), stride).leftCols(count).transpose();
+  }
+}
+
+void Network::save(io::TensorFile& file, const std::string& prefix) const {
+  file.set_text(
+      prefix,
+      nlohmann::json{{"kind", "mlp"}, {"activation", name_of(activation_)}, {"layers", layers_.size()}}
+          .dump());
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    const std::string layer = prefix + "/layer" + std::to_string(i);
+    file.set(layer + "/weights", layers_[i].weights);
+    file.set(layer + "/bias", layers_[i].bias);
+  }
+}
+
+Network Network::load(const io::TensorFile& file, const std::string& prefix) {
+  const auto description = nlohmann::json::parse(file.text(prefix), nullptr, false);
+  const bool readable = description.is_object() && description.contains("activation") &&
+                        description["activation"].is_string() && description.contains("layers") &&
+                        description["layers"].is_number_unsigned();
+  if (!readable)
+    throw InputError({"unreadable network", file.where() + ":" + prefix, file.text(prefix),
+                      R"(JSON such as {"activation": "relu", "layers": 3})"});
+  std::vector<Layer> layers;
+  const auto n_layers = description["layers"].get<std::size_t>();
+  for (std::size_t i = 0; i < n_layers; ++i) {
+    const std::string layer = prefix + "/layer" + std::to_string(i);
+    layers.push_back({file.tensor(layer + "/weights"), file.tensor(layer + "/bias")});
+  }
+  try {
+    return {std::move(layers), activation_of(description["activation"].get<std::string>())};
+  } catch (const InputError& error) {
+    throw InputError({"network " + prefix + " cannot be used", file.where(), error.what()});
+  }
+}
+
+}  // namespace elrom::model
