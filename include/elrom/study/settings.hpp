@@ -1,0 +1,130 @@
+#pragma once
+// Settings of a study: study.toml and the command line, resolved over the defaults of an effort level.
+// Every setting, its default and its meaning stand in one table (train/study/settings.cpp); keys that are not
+// in it are refused with the nearest known one.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "elrom/field/symmetry.hpp"
+
+namespace elrom::study {
+
+struct SplitSettings {
+  std::vector<std::string> held_out{"load_*", "rep*"};  ///< names or patterns of cases never built with
+  std::string by = "case";                              ///< "case" | "record" (leaks; to show that it does)
+  std::vector<double> fractions{0.7, 0.2, 0.1};         ///< train, validation, test
+};
+
+struct SymmetrySettings {
+  bool enabled = true;
+  std::vector<field::MirrorDeclaration>
+      mirrors;  ///< empty: those of the shipped furnace, where schema and mesh allow
+};
+
+/// The default network that is built for every column, and the closed-form screen beside it.
+struct ScreenSettings {
+  std::string method = "networks";  ///< "networks" | "fast"
+  int builds = 5;
+  int n_units = 16;
+  int batch_size = 64;
+  double learning_rate = 4e-3;
+  int max_epochs = 60;
+  int patience = 6;
+  int features = 384;  ///< random features of the fast screen
+};
+
+struct BandSettings {
+  std::string scope = "field";  ///< "field" | "plane"
+  std::vector<double> edges{0.1, 0.2, 0.3, 0.5};
+};
+
+struct SearchSettings {
+  std::string algorithm = "direct";  ///< "direct" | "sobol_bobyqa" | "sbplx" | "crs2" | "random"
+  int trials = 50;
+  bool prune = true;      ///< ASHA
+  int confirm = 5;        ///< best trials that are built again ...
+  int confirm_seeds = 3;  ///< ... with so many seeds
+  int max_epochs = 60;
+  int patience = 8;
+  std::vector<double> learning_rate{3e-4, 2e-2};
+  std::vector<double> n_layers{1, 3};
+  std::vector<double> n_units{16, 256};
+  std::vector<double> batch_size{32, 256};
+  std::vector<double> weight_decay{1e-6, 1e-1};  ///< searched when search.regularise is on
+  std::vector<double> dropout{0.0, 0.3};
+  bool regularise = false;  ///< search weight_decay and dropout too
+};
+
+struct FitSettings {
+  int builds = 5;
+  std::string combine = "mean";  ///< "mean" | "best" (the source)
+  int max_epochs = 200;
+  int patience = 20;
+};
+
+struct NetworkSettings {
+  std::string plane_encoding = "fourier";  ///< "index" (the source) | "fourier" | "one_hot"
+  std::string activation = "relu";
+  std::string targets = "column";  ///< "column" (eq. 6.1) | "cell": mean and scale of every cell on its own
+  bool mirrors = false;            ///< train on mirror images too
+  std::string relevance = "none";  ///< "none" | "linear": inputs scaled by what a ridge fit makes of them
+  std::map<std::string, std::string> transform{
+      {"solid_volume_fraction", "log"}};  ///< field -> none | log | asinh
+};
+
+/// What a study without networks, or a peer beside them, is fitted with.
+struct PeerSettings {
+  std::vector<std::string> methods{"nearest", "linear", "pod_gp", "pod_gp_per_mode",
+                                   "pod_rbf"};  ///< bundles beside the model
+  bool networks = true;  ///< networks take part in "auto" and get a bundle of their own
+  int folds = 8;         ///< load-grouped folds of the cross-validation in "auto"
+};
+
+struct Settings {
+  std::string effort = "standard";  ///< "quick" | "standard" | "thorough"
+  std::string method = "auto";
+  std::string store = "snapshots.h5";
+  std::int64_t seed = 1;
+  int threads = 0;  ///< 0: all
+  std::string device = "cpu";
+  std::vector<std::string> fields;  ///< empty: all of the store
+  SplitSettings split;
+  SymmetrySettings symmetry;
+  ScreenSettings screen;
+  BandSettings bands;
+  SearchSettings search;
+  FitSettings fit;
+  NetworkSettings networks;
+  PeerSettings peers;
+
+  [[nodiscard]] int n_threads() const;  ///< threads, or what the machine has
+};
+
+/// @param file study.toml; need not exist @param overrides "key=value" from the command line, which win over
+/// the file
+/// @throws UsageError for an unknown key or a value of another type or out of range, with file:line and the
+/// nearest key
+[[nodiscard]] Settings read_settings(const std::filesystem::path& file,
+                                     const std::vector<std::string>& overrides = {});
+
+/// The whole settings as TOML that reads back to the same settings; `section` ("screen") limits it to one
+/// table.
+[[nodiscard]] std::string to_toml(const Settings& settings, std::string_view section = {});
+
+/// Key, default and meaning of every setting, for --help.
+struct SettingHelp {
+  std::string key, value, meaning;
+};
+[[nodiscard]] std::vector<SettingHelp> settings_help();
+
+/// Left-right and front-rear mirrors of the shipped furnace.
+[[nodiscard]] std::vector<field::MirrorDeclaration> furnace_mirrors();
+
+}  // namespace elrom::study
