@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "dense_kernel.hpp"
@@ -74,28 +75,31 @@ Network::Network(std::vector<Layer> layers, Activation activation)
 std::size_t Network::n_inputs() const { return layers_.empty() ? 0 : layers_.front().weights.shape()[1]; }
 std::size_t Network::n_outputs() const { return layers_.empty() ? 0 : layers_.back().weights.shape()[0]; }
 
-std::span<const float> Network::forward_shared(std::span<const float> shared, std::span<const float> own,
-                                               std::size_t n_rows, Workspace& workspace) const {
+void Network::forward_shared(std::span<const float> shared, std::span<const float> own, std::size_t n_rows,
+                             std::span<float> out, Workspace& workspace) const {
   const std::size_t stride = padded(n_rows);
   check(!layers_.empty() && shared.size() <= n_inputs(), "a network with enough inputs");
   check(own.size() == (n_inputs() - shared.size()) * stride,
         "own inputs are (n_inputs - n_shared, padded rows)");
-  std::size_t widest = 0;
-  for (const auto& layer : layers_) widest = std::max(widest, layer.weights.shape()[0]);
+  check(out.size() == n_outputs() * stride, "out is (n_outputs, padded rows)");
+  std::size_t widest = 0;  // of the hidden layers
+  for (std::size_t i = 0; i + 1 < layers_.size(); ++i)
+    widest = std::max(widest, layers_[i].weights.shape()[0]);
+  const Workspace::Frame frame(workspace);
   std::span<float> from = workspace.floats(widest * stride), to = workspace.floats(widest * stride);
-
-  const auto& first = layers_.front();
   const std::span<const float> start = first_layer_start(shared, workspace);
-  dense({&first.weights, shared.size(), n_inputs() - shared.size()}, own.data(), stride, start.data(),
-        to.data(), workspace);
-  for (std::size_t i = 1; i < layers_.size(); ++i) {
-    const auto& layer = layers_[i];
-    activate(activation_, to.data(), layers_[i - 1].weights.shape()[0] * stride);
+  const auto run = [&](std::size_t i, const WeightView& weights, const float* in, const float* begin) {
+    const bool last = i + 1 == layers_.size();
+    float* result = last ? out.data() : to.data();
+    dense(weights, in, stride, begin, result, workspace);
+    if (last) return;
+    activate(activation_, result, layers_[i].weights.shape()[0] * stride);
     std::swap(from, to);
-    dense({&layer.weights, 0, layer.weights.shape()[1]}, from.data(), stride, layer.bias.f32().data(),
-          to.data(), workspace);
-  }
-  return to.first(n_outputs() * stride);
+  };
+  run(0, {&layers_[0].weights, shared.size(), n_inputs() - shared.size()}, own.data(), start.data());
+  for (std::size_t i = 1; i < layers_.size(); ++i)
+    run(i, {&layers_[i].weights, 0, layers_[i].weights.shape()[1]}, from.data(),
+        layers_[i].bias.f32().data());
 }
 
 std::span<const float> Network::first_layer_start(std::span<const float> shared, Workspace& workspace) const {
@@ -128,10 +132,22 @@ void Network::forward(const Eigen::Ref<const MatrixF>& x, Eigen::Ref<MatrixF> y,
     MapF transposed(own.data(), x.cols(), stride);
     transposed.leftCols(count) = x.middleRows(static_cast<Eigen::Index>(first), count).transpose();
     transposed.rightCols(stride - count).setZero();
-    const auto out = forward_shared({}, own, rows, workspace);
+    const std::span<float> out = workspace.floats(n_outputs() * padded(rows));
+    forward_shared({}, own, rows, out, workspace);
     y.middleRows(static_cast<Eigen::Index>(first), count) =
         ConstMapF(out.data(), y.cols(), stride).leftCols(count).transpose();
   }
+}
+
+Network Network::halved() const {
+  auto layers = layers_;
+  for (auto& layer : layers) {
+    const auto weights = layer.weights.f32();
+    auto halves = std::make_shared<std::vector<Eigen::half>>(weights.begin(), weights.end());
+    const auto* bytes = reinterpret_cast<const std::byte*>(halves->data());
+    layer.weights = io::Tensor(io::DType::f16, layer.weights.shape(), std::move(halves), bytes);
+  }
+  return {std::move(layers), activation_};
 }
 
 void Network::save(io::TensorFile& file, const std::string& prefix) const {

@@ -44,10 +44,12 @@ class Network {
   /// to be finite. A row's result equals to the bit for any number and order of rows.
   /// @param shared first inputs, (n_shared), n_shared <= n_inputs
   /// @param own the other inputs, (n_inputs - n_shared, padded n_rows), 64-byte aligned
-  /// @return (n_outputs, padded n_rows), in the workspace: valid until the caller's Frame ends
-  [[nodiscard]] std::span<const float> forward_shared(std::span<const float> shared,
-                                                      std::span<const float> own, std::size_t n_rows,
-                                                      Workspace& workspace) const;
+  /// @param out (n_outputs, padded n_rows), 64-byte aligned
+  void forward_shared(std::span<const float> shared, std::span<const float> own, std::size_t n_rows,
+                      std::span<float> out, Workspace& workspace) const;
+
+  /// The same network with weights in float16 (about three significant digits; half the bytes).
+  [[nodiscard]] Network halved() const;
 
   void save(io::TensorFile& file, const std::string& prefix) const;
   [[nodiscard]] static Network load(const io::TensorFile& file, const std::string& prefix);

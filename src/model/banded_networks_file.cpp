@@ -1,0 +1,130 @@
+// How a networks model lies in a bundle (data/FORMATS.md, "Field model: networks").
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/model/banded_networks.hpp"
+
+namespace elrom::model {
+namespace {
+
+using Json = nlohmann::json;
+
+Json describe(const BandedNetworks::Parts& parts) {
+  Json submodels = Json::array();
+  for (const auto& submodel : parts.submodels)
+    submodels.push_back({{"name", submodel.name},
+                         {"builds", submodel.builds.size()},
+                         {"scores", submodel.scores},
+                         {"masked", !submodel.mask.empty()}});
+  return {{"kind", "networks"},
+          {"columns", parts.n_columns},
+          {"planes", parts.planes.n_planes},
+          {"plane_encoding", name_of(parts.planes.kind)},
+          {"frequencies", parts.planes.n_frequencies},
+          {"transform", name_of(parts.transform.kind)},
+          {"transform_scale", parts.transform.scale},
+          {"combine", parts.combination == Combination::mean ? "mean" : "best"},
+          {"submodels", std::move(submodels)}};
+}
+
+std::vector<double> numbers(const io::TensorFile& file, const std::string& name) {
+  const auto values = file.tensor(name).f64();
+  return {values.begin(), values.end()};
+}
+
+/// A number of things that a file may ask for; what it asks for is checked against its tensors later on.
+constexpr std::size_t size_limit = 10'000'000;
+
+std::size_t size_of(const Json& description, const char* key) {
+  const auto size = description.at(key).get<std::size_t>();
+  if (size == 0 || size > size_limit) throw InputError({"size out of range", key, std::to_string(size)});
+  return size;
+}
+
+std::string submodel_prefix(const std::string& prefix, std::size_t i) {
+  return prefix + "/submodel" + std::to_string(i);
+}
+std::string build_prefix(const std::string& submodel, std::size_t b) {
+  return submodel + "/build" + std::to_string(b);
+}
+
+Submodel load_submodel(const io::TensorFile& file, const std::string& prefix, const Json& description,
+                       std::size_t n_planes) {
+  Submodel submodel;
+  submodel.name = description.at("name").get<std::string>();
+  submodel.scores = description.at("scores").get<std::vector<double>>();
+  const auto columns = file.tensor(prefix + "/columns").i32();
+  submodel.columns.assign(columns.begin(), columns.end());
+  if (description.at("masked").get<bool>()) {
+    const auto mask = file.tensor(prefix + "/mask", std::array{n_planes, columns.size()}).u8();
+    submodel.mask.assign(mask.begin(), mask.end());
+  }
+  const auto n_builds = size_of(description, "builds");
+  for (std::size_t b = 0; b < n_builds; ++b)
+    submodel.builds.push_back(Network::load(file, build_prefix(prefix, b)));
+  return submodel;
+}
+
+Combination combination_of(const std::string& name) {
+  if (name == "mean") return Combination::mean;
+  if (name == "best") return Combination::best;
+  throw InputError({"unknown combination of builds", {}, name, "mean or best"});
+}
+
+BandedNetworks::Parts load_parts(const io::TensorFile& file, const std::string& prefix,
+                                 const Json& description) {
+  BandedNetworks::Parts parts;
+  parts.n_columns = size_of(description, "columns");
+  parts.planes = {plane_encoding_of(description.at("plane_encoding").get<std::string>()),
+                  size_of(description, "planes"), size_of(description, "frequencies")};
+  parts.transform = {transform_of(description.at("transform").get<std::string>()),
+                     description.at("transform_scale").get<float>()};
+  parts.combination = combination_of(description.at("combine").get<std::string>());
+  parts.inputs = {numbers(file, prefix + "/input_mean"), numbers(file, prefix + "/input_factor"),
+                  numbers(file, prefix + "/input_relevance")};
+  parts.outputs = {file.tensor(prefix + "/output_mean").matrix(),
+                   file.tensor(prefix + "/output_deviation").matrix()};
+  const auto& submodels = description.at("submodels");
+  for (std::size_t i = 0; i < submodels.size(); ++i)
+    parts.submodels.push_back(
+        load_submodel(file, submodel_prefix(prefix, i), submodels.at(i), parts.planes.n_planes));
+  return parts;
+}
+
+}  // namespace
+
+void BandedNetworks::save(io::TensorFile& file, const std::string& prefix) const {
+  file.set_text(prefix, describe(parts_).dump());
+  const std::vector<std::size_t> inputs{parts_.inputs.size()};
+  file.set(prefix + "/input_mean", io::Tensor::copy(std::span<const double>(parts_.inputs.mean), inputs));
+  file.set(prefix + "/input_factor", io::Tensor::copy(std::span<const double>(parts_.inputs.factor), inputs));
+  file.set(prefix + "/input_relevance",
+           io::Tensor::copy(std::span<const double>(parts_.inputs.relevance), inputs));
+  file.set(prefix + "/output_mean", io::Tensor::copy(parts_.outputs.mean));
+  file.set(prefix + "/output_deviation", io::Tensor::copy(parts_.outputs.deviation));
+  for (std::size_t i = 0; i < parts_.submodels.size(); ++i) {
+    const auto& submodel = parts_.submodels[i];
+    const std::string name = submodel_prefix(prefix, i);
+    const std::size_t n_out = submodel.columns.size();
+    file.set(name + "/columns", io::Tensor::copy(std::span<const std::int32_t>(submodel.columns), {n_out}));
+    if (!submodel.mask.empty())
+      file.set(name + "/mask", io::Tensor::copy(std::span<const std::uint8_t>(submodel.mask),
+                                                {parts_.planes.n_planes, n_out}));
+    for (std::size_t b = 0; b < submodel.builds.size(); ++b)
+      submodel.builds[b].save(file, build_prefix(name, b));
+  }
+}
+
+std::unique_ptr<FieldModel> BandedNetworks::load(const io::TensorFile& file, const std::string& prefix) {
+  try {
+    return std::make_unique<BandedNetworks>(load_parts(file, prefix, Json::parse(file.text(prefix))));
+  } catch (const Json::exception& error) {
+    throw InputError(
+        {"unreadable description of a networks model", file.where() + ":" + prefix, error.what()});
+  }
+}
+
+}  // namespace elrom::model
