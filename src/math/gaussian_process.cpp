@@ -1,0 +1,139 @@
+#include "elrom/math/gaussian_process.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "elrom/base/error.hpp"
+#include "elrom/math/optimise.hpp"
+
+namespace elrom::math {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixD divided(const MatrixD& inputs, const VectorXd& lengths) {
+  return inputs.array().rowwise() / lengths.transpose().array();
+}
+
+/// The covariance matrix without noise, and what its derivatives need.
+struct Covariances {
+  MatrixXd k;      // k(r), unit signal
+  MatrixXd slope;  // (dk/dr) / r
+};
+
+Covariances covariances(Covariance kind, const MatrixD& scaled, bool with_slope) {
+  Covariances c{squared_distances(scaled, scaled).cwiseSqrt(), {}};
+  c.k.diagonal().setZero();
+  if (with_slope) c.slope = c.k.unaryExpr([&](double r) { return covariance_slope(kind, r); });
+  c.k = c.k.unaryExpr([&](double r) { return covariance(kind, r); });
+  return c;
+}
+
+/// Cholesky with the least jitter (relative to the diagonal, powers of 100) that succeeds.
+Eigen::LLT<MatrixXd> factorise(MatrixXd k) {
+  const double diagonal = k.diagonal().mean();
+  double added = 0;
+  for (double jitter = 1e-12; jitter < 1e-3; jitter *= 100) {
+    k.diagonal().array() += jitter * diagonal - added;
+    added = jitter * diagonal;
+    Eigen::LLT<MatrixXd> factor(k);
+    if (factor.info() == Eigen::Success) return factor;
+  }
+  throw NumericalError("Gaussian process: the covariance matrix is not positive definite even with jitter");
+}
+
+GpParameters parameters_of(const VectorXd& theta, Covariance kind) {
+  const Eigen::Index p = theta.size() - 2;
+  return {theta.head(p).array().exp(), std::exp(theta[p]), std::exp(theta[p + 1]), kind};
+}
+
+}  // namespace
+
+double gp_negative_log_likelihood(const MatrixD& inputs, const MatrixXd& targets, Covariance kind,
+                                  const VectorXd& theta, VectorXd& gradient) {
+  const Eigen::Index n = inputs.rows(), p = inputs.cols();
+  const double n_targets = static_cast<double>(targets.cols());
+  const GpParameters parameters = parameters_of(theta, kind);
+  const MatrixD scaled = divided(inputs, parameters.length_scales);
+  const Covariances c = covariances(kind, scaled, true);
+  MatrixXd k = parameters.signal_variance * c.k;
+  k.diagonal().array() += parameters.noise_variance;
+  const Eigen::LLT<MatrixXd> factor(k);
+  gradient.setZero(theta.size());
+  if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+
+  const MatrixXd inverse = factor.solve(MatrixXd::Identity(n, n));
+  const MatrixXd alpha = inverse * targets;
+  const double log_det = 2 * factor.matrixLLT().diagonal().array().log().sum();
+  const double value = 0.5 * targets.cwiseProduct(alpha).sum() +
+                       0.5 * n_targets * (log_det + static_cast<double>(n) * std::log(2 * std::numbers::pi));
+
+  // Eq. 5.9 with W = sum over targets of K^-1 - alpha alpha^T: dJ/dtheta = tr(W dK/dtheta) / 2.
+  const MatrixXd w = n_targets * inverse - alpha * alpha.transpose();
+  // dK_ij / dlog l_k = -signal * slope_ij * (a_ik - a_jk)^2; the sum over i, j of a symmetric Q times that
+  // square is 2 sum_i rowsum_i a_ik^2 - 2 a_k^T Q a_k.
+  const MatrixXd q = -parameters.signal_variance * w.cwiseProduct(c.slope);
+  const VectorXd row_sums = q.rowwise().sum();
+  const MatrixD qa = q * scaled;
+  for (Eigen::Index j = 0; j < p; ++j) {
+    gradient[j] = row_sums.dot(scaled.col(j).cwiseAbs2()) - scaled.col(j).dot(qa.col(j));
+  }
+  gradient[p] = 0.5 * parameters.signal_variance * w.cwiseProduct(c.k).sum();
+  gradient[p + 1] = 0.5 * parameters.noise_variance * w.trace();
+  const double data = static_cast<double>(n) * n_targets;
+  gradient /= data;
+  return value / data;
+}
+
+GpParameters fit_gp(const MatrixD& inputs, const MatrixXd& targets, const GpFitOptions& options) {
+  const Eigen::Index p = inputs.cols();
+  VectorXd lower(p + 2), upper(p + 2);
+  lower << VectorXd::Constant(p, std::log(options.lowest_length)), -5, std::log(options.lowest_noise);
+  upper << VectorXd::Constant(p, std::log(options.highest_length)), 5, std::log(options.highest_noise);
+  const Objective objective = [&](const VectorXd& theta, VectorXd& gradient) {
+    return gp_negative_log_likelihood(inputs, targets, options.covariance, theta, gradient);
+  };
+  Minimum best{{}, std::numeric_limits<double>::infinity(), 0};
+  for (double length : options.start_lengths) {
+    VectorXd start(p + 2);
+    start << VectorXd::Constant(p, std::log(length)), 0, std::log(0.1);
+    const Minimum found =
+        minimise(objective, start, lower, upper, {.max_iterations = options.max_iterations});
+    if (found.value < best.value) best = found;
+  }
+  check(best.x.size() == p + 2, "Gaussian process: at least one start");
+  return parameters_of(best.x, options.covariance);
+}
+
+GaussianProcess::GaussianProcess(const MatrixD& inputs, const MatrixXd& targets, GpParameters parameters)
+    : parameters_(std::move(parameters)), scaled_inputs_(divided(inputs, parameters_.length_scales)) {
+  MatrixXd k = parameters_.signal_variance * covariances(parameters_.covariance, scaled_inputs_, false).k;
+  k.diagonal().array() += parameters_.noise_variance;
+  const Eigen::LLT<MatrixXd> factor = factorise(std::move(k));
+  weights_ = factor.solve(targets);
+  inverse_factor_ = factor.matrixL().solve(MatrixXd::Identity(inputs.rows(), inputs.rows()));
+}
+
+MatrixXd GaussianProcess::cross_covariance(const MatrixD& x) const {
+  const MatrixXd r = squared_distances(divided(x, parameters_.length_scales), scaled_inputs_).cwiseSqrt();
+  return parameters_.signal_variance *
+         r.unaryExpr([&](double d) { return covariance(parameters_.covariance, d); });
+}
+
+MatrixXd GaussianProcess::mean(const MatrixD& x) const { return cross_covariance(x) * weights_; }
+
+VectorXd GaussianProcess::variance(const MatrixD& x) const {
+  const MatrixXd whitened = inverse_factor_ * cross_covariance(x).transpose();
+  return (parameters_.signal_variance - whitened.colwise().squaredNorm().transpose().array()).cwiseMax(0);
+}
+
+MatrixXd GaussianProcess::leave_one_out_residuals() const {
+  const VectorXd precision = inverse_factor_.colwise().squaredNorm().transpose();  // diagonal of K^-1
+  return weights_.array().colwise() / precision.array();
+}
+
+}  // namespace elrom::math

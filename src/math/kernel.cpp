@@ -1,0 +1,79 @@
+#include "elrom/math/kernel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+
+namespace elrom::math {
+
+namespace {
+constexpr std::array<std::pair<Covariance, std::string_view>, 4> names{
+    {{Covariance::exponential, "exponential"},
+     {Covariance::matern32, "matern32"},
+     {Covariance::matern52, "matern52"},
+     {Covariance::gaussian, "gaussian"}}};
+}
+
+std::string_view name_of(Covariance covariance) {
+  return std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.first == covariance; })
+      ->second;
+}
+
+Covariance covariance_of(std::string_view name) {
+  std::vector<std::string> known;
+  for (const auto& [kind, text] : names) {
+    if (text == name) return kind;
+    known.emplace_back(text);
+  }
+  throw InputError({.what = "unknown covariance function",
+                    .found = "'" + std::string(name) + "'",
+                    .advice = base::name_advice(name, known)});
+}
+
+double covariance(Covariance kind, double r) {
+  switch (kind) {
+    case Covariance::exponential:
+      return std::exp(-r);
+    case Covariance::matern32: {
+      const double a = std::sqrt(3.0) * std::min(r, 1e3);
+      return (1 + a) * std::exp(-a);
+    }
+    case Covariance::matern52: {
+      const double a = std::sqrt(5.0) * std::min(r, 1e3);
+      return (1 + a + a * a / 3) * std::exp(-a);
+    }
+    case Covariance::gaussian:
+      return std::exp(-0.5 * r * r);
+  }
+  return 0;
+}
+
+double covariance_slope(Covariance kind, double r) {
+  switch (kind) {
+    case Covariance::exponential:
+      return -std::exp(-r) / std::max(r, 1e-9);
+    case Covariance::matern32:
+      return -3 * std::exp(-std::sqrt(3.0) * r);
+    case Covariance::matern52: {
+      const double a = std::sqrt(5.0) * std::min(r, 1e3);
+      return -5.0 / 3.0 * (1 + a) * std::exp(-a);
+    }
+    case Covariance::gaussian:
+      return -std::exp(-0.5 * r * r);
+  }
+  return 0;
+}
+
+Eigen::MatrixXd squared_distances(const MatrixD& a, const MatrixD& b) {
+  Eigen::MatrixXd distances = -2 * (a * b.transpose());
+  distances.colwise() += a.rowwise().squaredNorm();
+  distances.rowwise() += b.rowwise().squaredNorm().transpose();
+  return distances.cwiseMax(0);
+}
+
+}  // namespace elrom::math

@@ -1,0 +1,107 @@
+#include "elrom/math/rbf.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/math/kernel.hpp"
+
+namespace elrom::math {
+
+namespace {
+
+constexpr std::array<std::pair<RadialFunction, std::string_view>, 3> names{
+    {{RadialFunction::linear, "linear"},
+     {RadialFunction::thin_plate_spline, "thin_plate_spline"},
+     {RadialFunction::cubic, "cubic"}}};
+
+int tail_degree(const RbfOptions& options, const MatrixD& x) {
+  const int least = options.function == RadialFunction::linear ? 0 : 1;
+  const int degree = options.degree < 0 ? least : std::min(options.degree, 1);
+  return x.rows() > x.cols() + 1 ? degree : 0;
+}
+
+MatrixD tail_terms(const MatrixD& x, int degree) {
+  MatrixD terms = MatrixD::Ones(x.rows(), degree == 0 ? 1 : 1 + x.cols());
+  if (degree > 0) terms.rightCols(x.cols()) = x;
+  return terms;
+}
+
+}  // namespace
+
+std::string_view name_of(RadialFunction function) {
+  return std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.first == function; })->second;
+}
+
+RadialFunction radial_function_of(std::string_view name) {
+  std::vector<std::string> known;
+  for (const auto& [function, text] : names) {
+    if (text == name) return function;
+    known.emplace_back(text);
+  }
+  throw InputError({.what = "unknown radial function",
+                    .found = "'" + std::string(name) + "'",
+                    .advice = base::name_advice(name, known)});
+}
+
+double radial(RadialFunction function, double r) {
+  switch (function) {
+    case RadialFunction::linear:
+      return -r;
+    case RadialFunction::thin_plate_spline:
+      return r > 0 ? r * r * std::log(r) : 0;
+    case RadialFunction::cubic:
+      return r * r * r;
+  }
+  return 0;
+}
+
+RbfInterpolator::RbfInterpolator(MatrixD x, const Eigen::MatrixXd& y, const RbfOptions& options)
+    : function_(options.function), x_(std::move(x)) {
+  check(x_.rows() == y.rows(), "RBF: as many targets as points");
+  const MatrixD terms = tail_terms(x_, tail_degree(options, x_));
+  const Eigen::Index n = x_.rows(), n_tail = terms.cols();
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + n_tail, n + n_tail);
+  Eigen::MatrixXd distances = squared_distances(x_, x_).cwiseSqrt();
+  distances.diagonal().setZero();
+  system.topLeftCorner(n, n) = distances.unaryExpr([&](double r) { return radial(function_, r); });
+  system.topLeftCorner(n, n).diagonal().array() += options.smoothing;
+  system.topRightCorner(n, n_tail) = terms;
+  system.bottomLeftCorner(n_tail, n) = terms.transpose();
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n + n_tail, y.cols());
+  right.topRows(n) = y;
+
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(system);
+  Eigen::MatrixXd solution;
+  if (lu.rcond() > 1e-14) {
+    solution = lu.solve(right);
+  } else {  // repeated points, or constant inputs under a tail of degree 1
+    solution = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(system).solve(right);
+  }
+  weights_ = solution.topRows(n);
+  tail_ = solution.bottomRows(n_tail);
+}
+
+RbfInterpolator::RbfInterpolator(RadialFunction function, MatrixD x, MatrixD weights, MatrixD tail)
+    : function_(function), x_(std::move(x)), weights_(std::move(weights)), tail_(std::move(tail)) {
+  check(weights_.rows() == x_.rows() && tail_.cols() == weights_.cols(), "RBF: shapes of stored parts");
+}
+
+void RbfInterpolator::evaluate(std::span<const double> x, std::span<double> y) const {
+  const Eigen::Map<const Eigen::RowVectorXd> at(x.data(), static_cast<Eigen::Index>(x.size()));
+  Eigen::Map<Eigen::RowVectorXd> out(y.data(), static_cast<Eigen::Index>(y.size()));
+  out = tail_.row(0);
+  for (Eigen::Index j = 1; j < tail_.rows(); ++j) out += at[j - 1] * tail_.row(j);
+  for (Eigen::Index i = 0; i < x_.rows(); ++i) {
+    out += radial(function_, (at - x_.row(i)).norm()) * weights_.row(i);
+  }
+}
+
+}  // namespace elrom::math
