@@ -1,7 +1,8 @@
 #pragma once
-// Tensor files in the safetensors layout: u64 little-endian header length, JSON header, raw little-endian tensors.
-// The reader maps the file and copies nothing. Every tensor's SHA-256 is kept in `__metadata__` under "sha256:<name>",
-// and the digest of all other metadata and of the shapes under "sha256:header", so a flipped byte is always found.
+// Tensor files in the safetensors layout: u64 little-endian header length, JSON header, raw little-endian
+// tensors. The reader maps the file and copies nothing. Every tensor's SHA-256 is kept in `__metadata__`
+// under "sha256:tensor/<name>", and that of the header's own text (without these 64 digits) under
+// "sha256:header", so a flipped byte is always found.
 //
 // Non-goals: compression, editing in place, other byte orders.
 
@@ -23,12 +24,13 @@ enum class DType { f16, f32, f64, i32, i64, u8 };
 [[nodiscard]] std::size_t size_of(DType type);
 [[nodiscard]] std::string_view name_of(DType type);  ///< "F16", "F32", ... as in the file
 
-/// An immutable n-d array, row-major; shares ownership of its bytes (a mapped file or a vector). Cheap to copy.
-/// Thread rule: const use from any thread.
+/// An immutable n-d array, row-major; shares ownership of its bytes (a mapped file or a vector). Cheap to
+/// copy. Thread rule: const use from any thread.
 class Tensor {
  public:
   Tensor() = default;
-  Tensor(DType type, std::vector<std::size_t> shape, std::shared_ptr<const void> owner, const std::byte* data);
+  Tensor(DType type, std::vector<std::size_t> shape, std::shared_ptr<const void> owner,
+         const std::byte* data);
 
   [[nodiscard]] static Tensor copy(const MatrixF& values);
   [[nodiscard]] static Tensor copy(const MatrixD& values);
@@ -43,6 +45,7 @@ class Tensor {
   [[nodiscard]] bool empty() const { return data_ == nullptr; }
   [[nodiscard]] std::span<const std::byte> bytes() const;
   /// Values of exactly that type. @throws InputError for another type
+  [[nodiscard]] std::span<const std::uint16_t> f16() const;  ///< bit patterns of IEEE half precision
   [[nodiscard]] std::span<const float> f32() const;
   [[nodiscard]] std::span<const double> f64() const;
   [[nodiscard]] std::span<const std::int32_t> i32() const;
@@ -62,8 +65,9 @@ class Tensor {
 class TensorFile {
  public:
   TensorFile() = default;
-  /// Maps `path`; checks the whole header (no duplicate names, overlaps, holes, overflow; header <= 100 MB) and its
-  /// digest, but reads no tensor. @throws InputError naming the file, what was found and what was expected
+  /// Maps `path`; checks the whole header (no duplicate names, overlaps, holes, overflow; header <= 100 MB)
+  /// and its digest, but reads no tensor. @throws InputError naming the file, what was found and what was
+  /// expected
   [[nodiscard]] static TensorFile open(const std::filesystem::path& path);
 
   [[nodiscard]] bool has(std::string_view name) const { return tensors_.contains(std::string(name)); }
@@ -76,24 +80,27 @@ class TensorFile {
   [[nodiscard]] bool has_text(std::string_view key) const { return texts_.contains(std::string(key)); }
   [[nodiscard]] const std::string& text(std::string_view key) const;
 
-  void set(std::string name, Tensor tensor) { tensors_.insert_or_assign(std::move(name), std::move(tensor)); }
-  void set_text(std::string key, std::string text) { texts_.insert_or_assign(std::move(key), std::move(text)); }
+  void set(std::string name, Tensor tensor);
+  void set_text(std::string key, std::string text);
 
-  /// Compares the digest of one tensor, or of all. @throws InputError naming file and tensor
+  /// Compares the digest of one tensor, or of all, with what was read from the file; tensors that were set()
+  /// here have none and pass. @throws InputError naming file and tensor
   void verify(std::string_view name) const;
   void verify_all(int n_threads = 1) const;
 
-  /// Atomically; tensors in name order, each 64-byte aligned by padding its predecessor's place in the header with
-  /// spaces. The same content gives the same bytes.
+  /// Atomically. Tensors are laid out by falling alignment (64 bytes where the size allows, never below their
+  /// element's) and then by name, without padding. The same content gives the same bytes.
   void write(const std::filesystem::path& path) const;
 
   [[nodiscard]] const std::string& where() const { return where_; }  ///< path, for messages
-  /// SHA-256 over the header (which holds every tensor's digest); empty for a set that was never written or read.
+  /// SHA-256 of the header (which holds every tensor's digest): the file's identity; empty for a set that was
+  /// never written or read.
   [[nodiscard]] const std::string& digest() const { return digest_; }
 
  private:
   std::map<std::string, Tensor> tensors_;
   std::map<std::string, std::string> texts_;
+  std::map<std::string, std::string> digests_;  //!< as read, by tensor
   std::string where_ = "memory";
   mutable std::string digest_;
 };

@@ -1,5 +1,6 @@
 #pragma once
-// Bundle `model.elrom`: everything prediction needs, in one tensor file. Layout in data/FORMATS.md (kind "elrom-bundle").
+// Bundle `model.elrom`: everything prediction needs, in one tensor file. Layout in data/FORMATS.md (kind
+// "elrom-bundle").
 
 #include <filesystem>
 #include <map>
@@ -18,12 +19,12 @@ namespace elrom::model {
 
 /// What a bundle holds beside its models. `provenance` and `accuracy` are for people and reports.
 struct BundleInfo {
-  std::string method;                          ///< as asked: "auto", "networks", "pod_gp" ...
+  std::string method;  ///< as asked: "auto", "networks", "pod_gp" ...
   std::vector<field::FieldInfo> fields;
   field::InputSchema schema;
-  std::vector<std::string> cases;              ///< training cases
+  std::vector<std::string> cases;                 ///< training cases
   std::map<std::string, std::string> provenance;  ///< program, store digest, settings digest, created (UTC)
-  std::string accuracy_json = "{}";            ///< cross-validated errors by field, kept for display
+  std::string accuracy_json = "{}";               ///< cross-validated errors by field, kept for display
 };
 
 /// A bundle under construction, or read whole.
@@ -31,7 +32,7 @@ struct Bundle {
   BundleInfo info;
   field::Mesh mesh;
   Guard guard;
-  std::map<std::string, std::shared_ptr<const FieldModel>> models;      ///< by field name
+  std::map<std::string, std::shared_ptr<const FieldModel>> models;        ///< by field name
   std::map<std::string, std::shared_ptr<const Uncertainty>> uncertainty;  ///< by field name; may be missing
 
   void write(const std::filesystem::path& path) const;
@@ -48,7 +49,7 @@ class BundleReader {
   [[nodiscard]] std::size_t n_planes() const { return n_planes_; }
   [[nodiscard]] std::size_t n_columns() const { return n_columns_; }
   [[nodiscard]] const std::string& mesh_digest() const { return mesh_digest_; }
-  [[nodiscard]] field::Mesh mesh() const;
+  [[nodiscard]] field::Mesh mesh(bool verify = true) const;
   [[nodiscard]] Guard guard() const;
   /// @param verify compares the digests of the tensors it reads
   [[nodiscard]] std::unique_ptr<FieldModel> model(const std::string& field, bool verify = true) const;

@@ -1,0 +1,155 @@
+#include "elrom/model/bundle.hpp"
+
+#include <charconv>
+
+#include "bundle_info.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/base/version.hpp"
+
+namespace elrom::model {
+namespace {
+
+constexpr std::string_view bundle_kind = "elrom-bundle";
+constexpr FormatVersion bundle_format{1, 0};
+
+std::string field_prefix(const std::string& field) { return "fields/" + field; }
+std::string uncertainty_prefix(const std::string& field) { return "uncertainty/" + field; }
+
+void save_mesh(io::TensorFile& file, const field::Mesh& mesh) {
+  file.set("mesh/centre", io::Tensor::copy(mesh.centre));
+  file.set("mesh/volume", io::Tensor::copy(std::span(mesh.volume), {mesh.volume.size()}));
+  file.set("mesh/points", io::Tensor::copy(mesh.points));
+  file.set("mesh/corners", io::Tensor::copy(std::span(mesh.corners), {mesh.corners.size() / 8, 8}));
+}
+
+int major_of(const std::string& format) {
+  int major = -1;
+  const auto dot = format.find('.');
+  if (dot != std::string::npos) std::from_chars(format.data(), format.data() + dot, major);
+  return major;
+}
+
+void check_kind(const io::TensorFile& file) {
+  const std::string kind = file.has_text("kind") ? file.text("kind") : "none";
+  if (kind != bundle_kind) {
+    throw InputError({.what = "not a bundle",
+                      .where = file.where(),
+                      .found = "kind '" + kind + "'",
+                      .expected = "'" + std::string(bundle_kind) + "'"});
+  }
+  const auto& format = file.text("format");
+  if (major_of(format) != bundle_format.major) {
+    throw InputError({.what = "bundle of another format version",
+                      .where = file.where(),
+                      .found = format,
+                      .expected = std::to_string(bundle_format.major) + ".x",
+                      .advice = "use the ELROM that wrote it (" +
+                                (file.has_text("program") ? file.text("program") : "unknown") +
+                                ") or train again"});
+  }
+}
+
+/// Names and shapes of a bundle under construction agree with each other.
+void check_consistent(const Bundle& bundle) {
+  for (const auto& info : bundle.info.fields) {
+    const auto model = bundle.models.find(info.name);
+    check(model != bundle.models.end() && model->second != nullptr, "bundle: a model for every field");
+    check(model->second->n_columns() == bundle.mesh.n_columns, "bundle: models on the bundle's mesh");
+  }
+  check(bundle.models.size() == bundle.info.fields.size(), "bundle: a field for every model");
+}
+
+void verify_prefix(const io::TensorFile& file, const std::string& prefix) {
+  const auto& tensors = file.tensors();
+  for (auto item = tensors.lower_bound(prefix + "/"); item != tensors.end(); ++item) {
+    if (!item->first.starts_with(prefix + "/")) return;
+    file.verify(item->first);
+  }
+}
+
+}  // namespace
+
+void Bundle::write(const std::filesystem::path& path) const {
+  check_consistent(*this);
+  io::TensorFile file;
+  file.set_text("kind", std::string(bundle_kind));
+  file.set_text("format", bundle_format.text());
+  file.set_text("program", program_version());
+  file.set_text("bundle", to_json({info, mesh.n_planes, mesh.n_columns, mesh.digest()}));
+  save_mesh(file, mesh);
+  guard.save(file, "guard");
+  for (const auto& [name, model] : models) model->save(file, field_prefix(name));
+  for (const auto& [name, interval] : uncertainty) {
+    if (interval) interval->save(file, uncertainty_prefix(name));
+  }
+  file.write(path);
+}
+
+BundleReader::BundleReader(const std::filesystem::path& path) : file_(io::TensorFile::open(path)) {
+  check_kind(file_);
+  auto description = bundle_description(file_.text("bundle"), file_.where());
+  info_ = std::move(description.info);
+  n_planes_ = description.n_planes;
+  n_columns_ = description.n_columns;
+  mesh_digest_ = std::move(description.mesh_digest);
+}
+
+field::Mesh BundleReader::mesh(bool verify) const {
+  if (verify) verify_prefix(file_, "mesh");
+  field::Mesh mesh;
+  mesh.n_planes = n_planes_;
+  mesh.n_columns = n_columns_;
+  const std::size_t n_cells = mesh.n_cells();
+  const std::size_t centre_shape[] = {n_cells, 3}, volume_shape[] = {n_cells}, points_shape[] = {0, 3},
+                    corners_shape[] = {n_cells, 8};
+  mesh.centre = file_.tensor("mesh/centre", centre_shape).matrix64();
+  mesh.points = file_.tensor("mesh/points", points_shape).matrix64();
+  const auto volume = file_.tensor("mesh/volume", volume_shape).f64();
+  const auto corners = file_.tensor("mesh/corners", corners_shape).i32();
+  mesh.volume.assign(volume.begin(), volume.end());
+  mesh.corners.assign(corners.begin(), corners.end());
+  for (const auto corner : mesh.corners) {
+    if (corner < 0 || corner >= mesh.points.rows()) {
+      throw InputError({.what = "broken mesh",
+                        .where = file_.where() + ":mesh/corners",
+                        .found = "point " + std::to_string(corner),
+                        .expected = "0 to " + std::to_string(mesh.points.rows() - 1)});
+    }
+  }
+  return mesh;
+}
+
+Guard BundleReader::guard() const {
+  verify_prefix(file_, "guard");
+  return Guard::load(file_, "guard", info_.schema);
+}
+
+std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, bool verify) const {
+  const auto prefix = field_prefix(field);
+  if (!file_.has_text(prefix)) {
+    std::vector<std::string> names;
+    for (const auto& known : info_.fields) names.push_back(known.name);
+    throw InputError({.what = "no field '" + field + "'",
+                      .where = file_.where(),
+                      .advice = base::name_advice(field, names)});
+  }
+  if (verify) verify_prefix(file_, prefix);
+  auto model = load_field_model(file_, prefix);
+  if (model->n_columns() != n_columns_) {
+    throw InputError({.what = "model of another mesh",
+                      .where = file_.where() + ":" + prefix,
+                      .found = std::to_string(model->n_columns()) + " columns",
+                      .expected = std::to_string(n_columns_)});
+  }
+  return model;
+}
+
+std::unique_ptr<Uncertainty> BundleReader::uncertainty(const std::string& field, bool verify) const {
+  const auto prefix = uncertainty_prefix(field);
+  if (!file_.has_text(prefix)) return nullptr;
+  if (verify) verify_prefix(file_, prefix);
+  return std::make_unique<Uncertainty>(Uncertainty::load(file_, prefix));
+}
+
+}  // namespace elrom::model

@@ -1,0 +1,109 @@
+#include "bundle_info.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/error.hpp"
+
+namespace elrom::model {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t most_cells = std::numeric_limits<std::int32_t>::max();  // corners are 32-bit
+
+constexpr std::array<std::pair<field::Parity, const char*>, 4> parities{
+    {{field::Parity::scalar, "scalar"},
+     {field::Parity::vector_x, "vector_x"},
+     {field::Parity::vector_y, "vector_y"},
+     {field::Parity::vector_z, "vector_z"}}};
+
+Json bound_to_json(const std::optional<double>& bound) { return bound ? Json(*bound) : Json(); }
+std::optional<double> bound_from_json(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
+}
+
+Json to_json(const field::FieldInfo& info) {
+  const char* parity = "";
+  for (const auto& [value, name] : parities) {
+    if (value == info.parity) parity = name;
+  }
+  return {{"name", info.name},
+          {"meaning", info.meaning},
+          {"unit", info.unit},
+          {"parity", parity},
+          {"lower", bound_to_json(info.lower)},
+          {"upper", bound_to_json(info.upper)}};
+}
+
+field::FieldInfo field_from_json(const Json& json) {
+  field::FieldInfo info;
+  info.name = json.at("name").get<std::string>();
+  info.meaning = json.at("meaning").get<std::string>();
+  info.unit = json.at("unit").get<std::string>();
+  for (const auto& [value, name] : parities) {
+    if (json.at("parity").get<std::string>() == name) info.parity = value;
+  }
+  info.lower = bound_from_json(json.at("lower"));
+  info.upper = bound_from_json(json.at("upper"));
+  return info;
+}
+
+}  // namespace
+
+std::string to_json(const BundleDescription& description) {
+  const auto& info = description.info;
+  Json json{{"method", info.method},
+            {"cases", info.cases},
+            {"provenance", info.provenance},
+            {"accuracy", info.accuracy_json}};
+  json["fields"] = Json::array();
+  for (const auto& field : info.fields) json["fields"].push_back(to_json(field));
+  json["inputs"] = Json::array();
+  for (const auto& input : info.schema.inputs()) {
+    json["inputs"].push_back(
+        {{"name", input.name}, {"unit", input.unit}, {"display_unit", input.display_unit}});
+  }
+  json["mesh"] = {{"n_planes", description.n_planes},
+                  {"n_columns", description.n_columns},
+                  {"digest", description.mesh_digest}};
+  return json.dump();
+}
+
+BundleDescription bundle_description(const std::string& text, const std::string& where) {
+  try {
+    const Json json = Json::parse(text);
+    BundleDescription description;
+    auto& info = description.info;
+    info.method = json.at("method").get<std::string>();
+    info.cases = json.at("cases").get<std::vector<std::string>>();
+    info.provenance = json.at("provenance").get<std::map<std::string, std::string>>();
+    info.accuracy_json = json.at("accuracy").get<std::string>();
+    for (const auto& field : json.at("fields")) info.fields.push_back(field_from_json(field));
+    std::vector<field::InputInfo> inputs;
+    for (const auto& input : json.at("inputs")) {
+      inputs.push_back({input.at("name").get<std::string>(), input.at("unit").get<std::string>(),
+                        input.at("display_unit").get<std::string>()});
+    }
+    info.schema = field::InputSchema(std::move(inputs));
+    const auto& mesh = json.at("mesh");
+    description.n_planes = mesh.at("n_planes").get<std::size_t>();
+    description.n_columns = mesh.at("n_columns").get<std::size_t>();
+    description.mesh_digest = mesh.at("digest").get<std::string>();
+    std::size_t n_cells = 0;
+    if (__builtin_mul_overflow(description.n_planes, description.n_columns, &n_cells) || n_cells == 0 ||
+        n_cells > most_cells) {
+      throw InputError({.what = "impossible mesh",
+                        .where = where,
+                        .found = std::to_string(description.n_planes) + " planes of " +
+                                 std::to_string(description.n_columns) + " columns"});
+    }
+    return description;
+  } catch (const Json::exception& fault) {
+    throw InputError({.what = "broken bundle description", .where = where, .found = fault.what()});
+  }
+}
+
+}  // namespace elrom::model

@@ -1,0 +1,200 @@
+#include "elrom/model/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/base/units.hpp"
+
+namespace elrom::model {
+namespace {
+
+constexpr std::size_t n_nearest = 3;
+constexpr double edge_margin = 0.1;       // of an input's trained width: beyond it a case is outside
+constexpr double edge_p_value = 0.05;     // rarer than this among the training cases: edge
+constexpr double outside_distance = 1.5;  // times the loneliest training case's distance: outside
+constexpr double rounding = 1e-9;         // relative: unit conversions must not push a case out of range
+constexpr double constant_scale = 1e-2;  // of its value: the unit of distance for an input that never changed
+
+struct Range {
+  double low = 0, high = 0;
+  [[nodiscard]] double slack() const { return rounding * std::max({std::abs(low), std::abs(high), 1e-30}); }
+  /// How far `value` lies outside, in trained widths; 0 inside.
+  [[nodiscard]] double excess(double value) const {
+    const double over = std::max(low - value, value - high);
+    if (over <= slack()) return 0;
+    return high > low ? over / (high - low) : std::numeric_limits<double>::infinity();
+  }
+};
+
+Range range_of(const MatrixD& inputs, std::size_t input) {
+  const auto column = inputs.col(static_cast<Eigen::Index>(input));
+  return {column.minCoeff(), column.maxCoeff()};
+}
+
+/// Standard deviation over the training cases, the unit of distance in one input.
+double scale_of(const MatrixD& inputs, std::size_t input) {
+  const auto column = inputs.col(static_cast<Eigen::Index>(input)).array();
+  const double mean = column.mean();
+  const double deviation = std::sqrt((column - mean).square().mean());
+  return deviation > rounding * std::abs(mean) ? deviation : std::max(constant_scale * std::abs(mean), 1e-12);
+}
+
+Eigen::RowVectorXd scales_of(const MatrixD& inputs) {
+  Eigen::RowVectorXd scales(inputs.cols());
+  for (Eigen::Index i = 0; i < inputs.cols(); ++i) scales[i] = scale_of(inputs, static_cast<std::size_t>(i));
+  return scales;
+}
+
+/// Root mean square of standardised differences to every training case.
+std::vector<double> distances(const MatrixD& inputs, const Eigen::RowVectorXd& scales,
+                              const Eigen::RowVectorXd& point) {
+  std::vector<double> result(static_cast<std::size_t>(inputs.rows()));
+  for (Eigen::Index i = 0; i < inputs.rows(); ++i) {
+    const auto difference = ((inputs.row(i) - point).array() / scales.array()).eval();
+    result[static_cast<std::size_t>(i)] = std::sqrt(difference.square().mean());
+  }
+  return result;
+}
+
+std::vector<std::size_t> nearest_first(const std::vector<double>& distances, std::size_t n) {
+  std::vector<std::size_t> order(distances.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  n = std::min(n, order.size());
+  std::partial_sort(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n), order.end(),
+      [&](std::size_t a, std::size_t b) { return std::pair(distances[a], a) < std::pair(distances[b], b); });
+  order.resize(n);
+  return order;
+}
+
+/// Joint distance: the mean over the nearest few, steadier than the nearest alone.
+double joint_distance(const std::vector<double>& distances, const std::vector<std::size_t>& nearest) {
+  double sum = 0;
+  for (const auto i : nearest) sum += distances[i];
+  return nearest.empty() ? 0 : sum / static_cast<double>(nearest.size());
+}
+
+std::string range_text(const field::InputInfo& info, double value, const Range& range) {
+  const auto& unit = base::unit(info.display_unit.empty() ? info.unit : info.display_unit);
+  const auto show = [&](double si) { return base::rounded(unit.from_si(si)); };
+  return info.name + " " + show(value) + " " + unit.symbol + " (trained " + show(range.low) + " to " +
+         show(range.high) + ")";
+}
+
+std::string reason_text(const Assessment& assessment, double loneliest) {
+  if (!assessment.out_of_range.empty()) {
+    std::string text = assessment.out_of_range.front();
+    const auto more = assessment.out_of_range.size() - 1;
+    if (more > 0) text += " and " + std::to_string(more) + (more == 1 ? " other input" : " other inputs");
+    return text + (assessment.verdict == Verdict::outside ? " lies outside the trained range"
+                                                          : " lies just outside the trained range");
+  }
+  const std::string distance = base::rounded(assessment.distance, 3);
+  if (assessment.verdict == Verdict::inside) {
+    return "every input is in its trained range and the case is as near to training cases as they are to "
+           "each other";
+  }
+  return "each input is in its trained range, but their combination is unusual: distance " + distance +
+         " to the nearest training cases (the loneliest of them: " + base::rounded(loneliest, 3) + ")";
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::inside:
+      return "inside";
+    case Verdict::edge:
+      return "edge";
+    case Verdict::outside:
+      return "outside";
+  }
+  return "?";
+}
+
+Guard::Guard(const field::InputSchema& schema, const MatrixD& inputs, std::vector<std::string> names,
+             std::vector<double> loads)
+    : schema_(schema), inputs_(inputs), names_(std::move(names)), loads_(std::move(loads)) {
+  const auto n = static_cast<std::size_t>(inputs_.rows());
+  check(names_.size() == n && loads_.size() == n, "guard: one name and one load a case");
+  check(static_cast<std::size_t>(inputs_.cols()) == schema_.size(), "guard: one column an input");
+  if (n == 0 || !inputs_.allFinite())
+    throw InputError("the guard needs finite inputs of at least one training case");
+  const auto scales = scales_of(inputs_);
+  for (std::size_t i = 0; n > 1 && i < n; ++i) {
+    auto others = distances(inputs_, scales, inputs_.row(static_cast<Eigen::Index>(i)));
+    others[i] = std::numeric_limits<double>::infinity();
+    self_distance_.push_back(joint_distance(others, nearest_first(others, std::min(n_nearest, n - 1))));
+  }
+  std::sort(self_distance_.begin(), self_distance_.end());
+}
+
+Assessment Guard::assess(std::span<const double> inputs) const {
+  check(inputs.size() == schema_.size() && inputs_.rows() > 0, "guard: one value an input");
+  const Eigen::Map<const Eigen::RowVectorXd> point(inputs.data(), static_cast<Eigen::Index>(inputs.size()));
+  if (!point.allFinite()) throw NumericalError("an input of the case is not a finite number");
+  Assessment result;
+  double worst_excess = 0;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const auto range = range_of(inputs_, i);
+    const double excess = range.excess(inputs[i]);
+    if (excess > 0) result.out_of_range.push_back(range_text(schema_[i], inputs[i], range));
+    worst_excess = std::max(worst_excess, excess);
+  }
+  const auto all = distances(inputs_, scales_of(inputs_), point);
+  const auto nearest = nearest_first(all, n_nearest);
+  for (const auto i : nearest) result.nearest.push_back({names_[i], loads_[i], all[i]});
+  result.distance = joint_distance(all, nearest);
+
+  const auto first_as_far = std::lower_bound(self_distance_.begin(), self_distance_.end(), result.distance);
+  const auto n_as_far = static_cast<double>(self_distance_.end() - first_as_far);
+  const double loneliest = self_distance_.empty() ? 0 : self_distance_.back();
+  result.p_value = (n_as_far + 1) / (static_cast<double>(self_distance_.size()) + 1);
+  const bool far = !self_distance_.empty() && result.distance > outside_distance * loneliest;
+  if (worst_excess > edge_margin || far) {
+    result.verdict = Verdict::outside;
+  } else if (worst_excess > 0 || result.p_value < edge_p_value) {
+    result.verdict = Verdict::edge;
+  }
+  result.reason = reason_text(result, loneliest);
+  return result;
+}
+
+void Guard::save(io::TensorFile& file, const std::string& prefix) const {
+  file.set_text(prefix, nlohmann::json{{"cases", names_}}.dump());
+  file.set(prefix + "/inputs", io::Tensor::copy(inputs_));
+  file.set(prefix + "/loads", io::Tensor::copy(std::span(loads_), {loads_.size()}));
+  file.set(prefix + "/self_distance", io::Tensor::copy(std::span(self_distance_), {self_distance_.size()}));
+}
+
+Guard Guard::load(const io::TensorFile& file, const std::string& prefix, const field::InputSchema& schema) {
+  const auto description = nlohmann::json::parse(file.text(prefix), nullptr, false);
+  const std::string where = file.where() + ":" + prefix;
+  if (!description.is_object() || !description.value("cases", nlohmann::json()).is_array()) {
+    throw InputError(
+        {.what = "no description of a guard", .where = where, .expected = "a JSON object with \"cases\""});
+  }
+  Guard guard;
+  guard.schema_ = schema;
+  for (const auto& name : description["cases"])
+    guard.names_.push_back(name.is_string() ? name.get<std::string>() : "?");
+  const std::size_t n = guard.names_.size();
+  const std::size_t inputs_shape[] = {n, schema.size()}, loads_shape[] = {n}, any[] = {0};
+  guard.inputs_ = file.tensor(prefix + "/inputs", inputs_shape).matrix64();
+  const auto loads = file.tensor(prefix + "/loads", loads_shape).f64();
+  const auto self = file.tensor(prefix + "/self_distance", any).f64();
+  guard.loads_.assign(loads.begin(), loads.end());
+  guard.self_distance_.assign(self.begin(), self.end());
+  if (n == 0 || !guard.inputs_.allFinite() || !std::is_sorted(self.begin(), self.end())) {
+    throw InputError(
+        {.what = "broken guard", .where = where, .expected = "finite inputs of at least one training case"});
+  }
+  return guard;
+}
+
+}  // namespace elrom::model
