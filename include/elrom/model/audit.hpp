@@ -1,0 +1,114 @@
+#pragma once
+// Physics audit of a case or of a prediction: what the fields say about mass and pressure against what the
+// boundary conditions say, plane by plane; and the smallest change that makes a prediction conserve.
+//
+// Assumptions, stated once: solids of one density (2400 kg/m3 in the shipped cases); gas is dry air of one
+// density per case at ambient pressure and the case's gas_temperature (the EL3D solver is incompressible); a
+// flux is the sum over a plane's cells of cell values, so the product of time averages stands for the average
+// of the product.
+//
+// Non-goals: judging. Even EL3D's own averages miss the inlets' flow by about 2 %; compare a prediction with
+// a case.
+//
+// Thread rule: pure functions.
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "elrom/field/boundary_conditions.hpp"
+#include "elrom/field/catalogue.hpp"
+#include "elrom/field/mesh.hpp"
+
+namespace elrom::model {
+
+/// Where gas enters: all mass-flow inputs whose names match `inputs` (shell style) enter between these
+/// heights.
+struct GasInlet {
+  std::string inputs;
+  double z_low_m = 0, z_high_m = 0;
+};
+
+struct AuditSettings {
+  double solid_density = 2400;       ///< [kg/m3]
+  double ambient_pressure = 101325;  ///< [Pa]
+  double gas_constant = 287.05;      ///< dry air [J/(kg K)]
+  double gravity = 9.80665;          ///< [m/s2]
+  std::vector<GasInlet> inlets;      ///< empty: no gas balance
+  double outlet_low_m =
+      std::numeric_limits<double>::infinity();  ///< above it, gas leaves and no balance is drawn
+};
+
+/// Openings of the shipped furnace: grid at the bottom, inlets on the walls up to 7.12 m, outlet from 41.3 m.
+[[nodiscard]] AuditSettings shipped_furnace_audit();
+
+/// One case's fields, borrowed: SI, field by field in the order of `fields`, (fields.size() *
+/// mesh.n_cells()).
+struct CaseView {
+  const field::Mesh& mesh;
+  const field::InputSchema& schema;
+  std::span<const double> inputs;
+  std::span<const field::FieldInfo> fields;
+  std::span<const float> values;
+};
+
+/// A plane's averages; NaN where a needed field or input is missing.
+struct PlaneAudit {
+  double height = 0;           ///< [m]
+  double area = 0;             ///< cell volumes over plane thickness [m2]
+  double volume_fraction = 0;  ///< volume-weighted
+  double pressure = 0;         ///< volume-weighted [Pa]
+  double gas_flow = 0;         ///< upward [kg/s]
+  double gas_inflow = 0;       ///< from all inlets below; NaN beside an inlet or the outlet [kg/s]
+  double solid_flow = 0;       ///< net upward [kg/s]
+};
+
+struct BoundsAudit {
+  std::string field;
+  std::size_t n_outside = 0, n_not_finite = 0;
+  double lowest = 0, highest = 0;
+};
+
+struct Audit {
+  std::optional<double> solids_kg;      ///< in the fields
+  std::optional<double> inventory_kg;   ///< by the boundary conditions
+  std::optional<double> gas_density;    ///< [kg/m3]
+  std::optional<double> gas_balance;    ///< mean of gas_flow / gas_inflow over the planes that have a balance
+  std::optional<double> pressure_drop;  ///< lowest minus highest plane [Pa]
+  std::optional<double> solids_weight;  ///< weight over plane area, summed over planes [Pa]
+  std::vector<PlaneAudit> planes;       //!< (n_planes), bottom first
+  std::vector<BoundsAudit> bounds;      //!< (fields)
+  [[nodiscard]] bool within_bounds() const;
+};
+
+[[nodiscard]] Audit audit(const CaseView& view, const AuditSettings& settings = shipped_furnace_audit());
+/// A few lines for a terminal.
+[[nodiscard]] std::string to_text(const Audit& audit);
+/// JSON object, for files.
+[[nodiscard]] std::string to_json(const Audit& audit);
+
+/// Size of a repair, so that nobody takes it for free.
+struct ConservationChange {
+  std::optional<double> solids_kg;      ///< added to the fields to reach the inventory
+  double volume_fraction_rms = 0;       ///< volume-weighted root mean square of the change
+  double volume_fraction_relative = 0;  ///< the same over the field's root mean square
+  double gas_velocity_rms = 0;          ///< [m/s]
+  double gas_velocity_relative = 0;
+  std::size_t n_planes_balanced = 0;
+};
+
+/// Changes `values` (layout of CaseView) as little as possible so that the solids sum to the input inventory
+/// and, in every plane with a balance, the gas flow equals the inlets' below. "Little" is sum V (change /
+/// scale)^2: the correction is scale^2 times one multiplier per constraint, held inside the bounds of the
+/// volume fraction.
+/// @param scale expected error of each value, same layout as values (e.g. conformal half-widths); empty: the
+/// volume
+///        fraction itself, and 1 m/s. @throws NumericalError when no fraction below the packing limit holds
+///        the inventory
+ConservationChange conserve(const CaseView& view, std::span<float> values, std::span<const float> scale = {},
+                            const AuditSettings& settings = shipped_furnace_audit());
+
+}  // namespace elrom::model
