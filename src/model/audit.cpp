@@ -66,7 +66,10 @@ BoundsAudit audit_bounds(const field::FieldInfo& info, std::span<const float> ce
     }
     bounds.lowest = std::min(bounds.lowest, value);
     bounds.highest = std::max(bounds.highest, value);
-    if ((info.lower && value < *info.lower) || (info.upper && value > *info.upper)) ++bounds.n_outside;
+    // Bounds as floats, like the cells: a cell clamped to 0.65F lies inside 0.65.
+    const bool below = info.lower && value < static_cast<float>(*info.lower);
+    const bool above = info.upper && value > static_cast<float>(*info.upper);
+    if (below || above) ++bounds.n_outside;
   }
   return bounds;
 }
