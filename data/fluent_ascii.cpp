@@ -1,0 +1,239 @@
+// Tables of cell values as text: Fluent's ASCII solution data, and plain CSV with `name [unit]` headings.
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "column_names.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/base/units.hpp"
+#include "elrom/field/catalogue.hpp"
+#include "elrom/ingest/cfd_case.hpp"
+#include "text_file.hpp"
+
+namespace elrom::ingest {
+namespace {
+
+struct Column {
+  std::string heading;
+  ColumnMeaning meaning;
+  base::Unit unit{};           //!< of the values in the file
+  std::ptrdiff_t target = -1;  //!< row of CfdCase::values, for fields
+};
+
+/// Reads a text line by line without copying it.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : text_(text) {}
+  /// Next line that is not blank; nullopt at the end.
+  std::optional<std::string_view> next() {
+    while (begin_ < text_.size()) {
+      const auto end = std::min(text_.find('\n', begin_), text_.size());
+      const auto line = text_.substr(begin_, end - begin_);
+      begin_ = end + 1;
+      ++number_;
+      if (line.find_first_not_of(" \t\r") != std::string_view::npos) return line;
+    }
+    return std::nullopt;
+  }
+  [[nodiscard]] std::size_t number() const { return number_; }
+
+ private:
+  std::string_view text_;
+  std::size_t begin_ = 0, number_ = 0;
+};
+
+std::vector<std::string> split_header(std::string_view line, bool commas) {
+  std::vector<std::string> headings;
+  if (commas) {
+    for (auto& part : base::split(line, ',')) headings.push_back(base::trim(part));
+    if (headings.back().empty()) headings.pop_back();  // a comma at the end of every line
+    return headings;
+  }
+  // "pressure [Pa]" is one heading also where blanks separate: a bracket belongs to the word before it.
+  for (const auto& word : base::split(base::trim(line), ' ')) {
+    const auto text = base::trim(word);
+    if (text.empty()) continue;
+    if (text.front() == '[' && !headings.empty())
+      headings.back() += " " + text;
+    else
+      headings.push_back(text);
+  }
+  return headings;
+}
+
+Column make_column(const std::string& heading, const std::string& where) {
+  const auto [name, symbol] = base::split_unit(heading);
+  Column column{.heading = heading, .meaning = column_meaning(name)};
+  if (column.meaning.kind == ColumnKind::ignored) return column;
+  column.unit = base::unit(symbol.empty() ? column.meaning.si : symbol);
+  if (column.unit.si != column.meaning.si) {
+    throw InputError({.what = "wrong unit of column '" + name + "'",
+                      .where = where,
+                      .found = symbol,
+                      .expected = "one of " + base::join(base::units_of(column.meaning.si), ", ")});
+  }
+  return column;
+}
+
+const Column* find(const std::vector<Column>& columns, ColumnKind kind, std::string_view field = {}) {
+  const Column* found = nullptr;
+  for (const auto& column : columns) {
+    if (column.meaning.kind == kind && column.meaning.field == field) found = &column;
+  }
+  return found;
+}
+
+void require(const std::vector<Column>& columns, ColumnKind kind, const std::string& name,
+             const std::vector<std::string>& spellings, const std::string& where) {
+  if (find(columns, kind, kind == ColumnKind::field ? name : "")) return;
+  std::vector<std::string> headings;
+  for (const auto& column : columns) headings.push_back(column.heading);
+  const auto near = base::closest_name(name, headings);
+  throw InputError({.what = "missing column '" + name + "'",
+                    .where = where,
+                    .found = "columns " + base::join(headings, ", "),
+                    .expected = "a heading among " + base::join(spellings, ", "),
+                    .advice = near ? "is '" + *near + "' meant?" : ""});
+}
+
+std::vector<Column> read_columns(std::string_view header, bool commas, const std::string& where) {
+  std::vector<Column> columns;
+  for (const auto& heading : split_header(header, commas)) {
+    auto column = make_column(heading, where);
+    const auto* same = find(columns, column.meaning.kind, column.meaning.field);
+    if (column.meaning.kind != ColumnKind::ignored && same) {
+      throw InputError({.what = "two columns stand for the same quantity",
+                        .where = where,
+                        .found = "'" + same->heading + "' and '" + heading + "'",
+                        .expected = "one of them"});
+    }
+    columns.push_back(std::move(column));
+  }
+  require(columns, ColumnKind::x, "x-coordinate", {"x-coordinate", "x [m]"}, where);
+  require(columns, ColumnKind::y, "y-coordinate", {"y-coordinate", "y [m]"}, where);
+  require(columns, ColumnKind::z, "z-coordinate", {"z-coordinate", "z [m]"}, where);
+  const auto fields = field::standard_fields();
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    require(columns, ColumnKind::field, fields[i].name, known_headings(fields[i].name), where);
+    for (auto& column : columns) {
+      if (column.meaning.field == fields[i].name) column.target = static_cast<std::ptrdiff_t>(i);
+    }
+  }
+  return columns;
+}
+
+bool is_separator(char c, bool commas) { return c == ' ' || c == '\t' || c == '\r' || (commas && c == ','); }
+
+/// Numbers of one line into `row`. @return how many there were; row.size() + 1 when there are more than fit
+std::size_t parse_row(std::string_view line, bool commas, std::vector<double>& row,
+                      const std::string& where) {
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  std::size_t n = 0;
+  for (;;) {
+    while (at != end && is_separator(*at, commas)) ++at;
+    if (at == end) return n;
+    if (n == row.size()) return n + 1;
+    if (*at == '+') ++at;
+    const auto [stop, fault] = std::from_chars(at, end, row[n]);
+    if (fault != std::errc{} || (stop != end && !is_separator(*stop, commas))) {
+      const char* word_end = at;
+      while (word_end != end && !is_separator(*word_end, commas)) ++word_end;
+      throw InputError(
+          {.what = "not a number",
+           .where = where,
+           .found = "'" +
+                    std::string(at, std::min<std::size_t>(40, static_cast<std::size_t>(word_end - at))) +
+                    "'"});
+    }
+    ++n;
+    at = stop;
+  }
+}
+
+std::size_t count_lines(std::string_view text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
+}
+
+/// Coordinates, volumes and fields as they come, in SI. Rows are cells.
+struct Table {
+  std::vector<double> centre, volume;
+  std::vector<float> values;  //!< (n_cells, n_fields)
+};
+
+Table read_table(Lines& lines, const std::vector<Column>& columns, bool commas, std::size_t n_expected,
+                 const std::string& path) {
+  const std::size_t n_fields = field::standard_fields().size();
+  Table table;
+  table.centre.reserve(3 * n_expected);
+  table.values.reserve(n_fields * n_expected);
+  std::vector<double> row(columns.size());
+  std::vector<float> fields(n_fields);
+  while (const auto line = lines.next()) {
+    const auto where = path + ":" + std::to_string(lines.number());
+    const auto n = parse_row(*line, commas, row, where);
+    if (n != columns.size()) {
+      throw InputError(
+          {.what = "wrong number of values in a line",
+           .where = where,
+           .found = n > columns.size() ? "more than " + std::to_string(columns.size()) : std::to_string(n),
+           .expected = std::to_string(columns.size()) + ", one for each heading"});
+    }
+    double position[3] = {0, 0, 0};
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const auto& column = columns[i];
+      if (column.meaning.kind == ColumnKind::ignored) continue;
+      const double value = column.unit.to_si(row[i]);
+      if (!std::isfinite(value) || !std::isfinite(static_cast<float>(value))) {
+        throw InputError({.what = "value that is no finite number",
+                          .where = where + " column '" + column.heading + "'",
+                          .found = base::number(row[i])});
+      }
+      if (column.meaning.kind == ColumnKind::field)
+        fields[static_cast<std::size_t>(column.target)] = static_cast<float>(value);
+      else if (column.meaning.kind == ColumnKind::volume)
+        table.volume.push_back(value);
+      else
+        position[static_cast<int>(column.meaning.kind) - static_cast<int>(ColumnKind::x)] = value;
+    }
+    table.centre.insert(table.centre.end(), position, position + 3);
+    table.values.insert(table.values.end(), fields.begin(), fields.end());
+  }
+  return table;
+}
+
+std::string case_name(const std::filesystem::path& path) {
+  auto name = path.filename();
+  if (name.extension() == ".gz") name = name.stem();
+  return name.stem().string();
+}
+
+}  // namespace
+
+CfdCase read_fluent_ascii(const std::filesystem::path& path) {
+  const auto text = read_text_file(path);
+  Lines lines(text);
+  const auto header = lines.next();
+  if (!header)
+    throw InputError({.what = "empty table", .where = path.string(), .expected = "a line of headings"});
+  const bool commas = header->find(',') != std::string_view::npos;
+  const auto columns = read_columns(*header, commas, path.string() + ":" + std::to_string(lines.number()));
+  const auto table = read_table(lines, columns, commas, count_lines(text), path.string());
+  const auto fields = field::standard_fields();
+  const auto n_cells = static_cast<Eigen::Index>(table.centre.size() / 3);
+  if (n_cells == 0) throw InputError({.what = "table without cells", .where = path.string()});
+
+  CfdCase result;
+  result.record.inputs.name = case_name(path);
+  result.record.inputs.load = std::nan("");
+  result.fields.assign(fields.begin(), fields.end());
+  result.centre = Eigen::Map<const MatrixD>(table.centre.data(), n_cells, 3);
+  result.volume = table.volume;
+  result.values =
+      ConstMapF(table.values.data(), n_cells, static_cast<Eigen::Index>(fields.size())).transpose();
+  return result;
+}
+
+}  // namespace elrom::ingest

@@ -1,0 +1,46 @@
+#include "text_file.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "elrom/base/error.hpp"
+
+namespace elrom::ingest {
+
+std::string read_text_file(const std::filesystem::path& path, std::size_t most_bytes) {
+  if (std::filesystem::is_directory(path)) {
+    throw InputError(
+        {.what = "cannot read text", .where = path.string(), .found = "a directory", .expected = "a file"});
+  }
+  // zlib passes files that are not gzip through unchanged.
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  if (!file) throw InputError({.what = "cannot open file", .where = path.string()});
+  gzbuffer(file.get(), 1u << 18);
+  std::string text;
+  for (;;) {
+    constexpr std::size_t block = std::size_t{1} << 20;
+    const std::size_t before = text.size();
+    text.resize(before + block);
+    const int got = gzread(file.get(), text.data() + before, static_cast<unsigned>(block));
+    int fault = Z_OK;
+    const char* reason = gzerror(file.get(), &fault);
+    if (got < 0 || (fault != Z_OK && fault != Z_STREAM_END)) {
+      throw InputError({.what = "cannot read text",
+                        .where = path.string(),
+                        .found = std::string("a damaged or truncated gzip stream (") + reason + ")"});
+    }
+    text.resize(before + static_cast<std::size_t>(got));
+    if (text.size() > most_bytes) {
+      throw InputError({.what = "text is too large",
+                        .where = path.string(),
+                        .expected = "at most " + std::to_string(most_bytes >> 20) + " MiB unpacked"});
+    }
+    if (got == 0) break;
+  }
+  text.shrink_to_fit();
+  return text;
+}
+
+}  // namespace elrom::ingest

@@ -1,0 +1,17 @@
+#pragma once
+// Whole text files, plain or gzip (told by their first bytes, not by their name).
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace elrom::ingest {
+
+/// Text larger than this when unpacked is refused: a small gzip file may stand for terabytes.
+inline constexpr std::size_t most_text_bytes = std::size_t{4} << 30;
+
+/// @throws InputError when it cannot be read, is a damaged gzip file, or unpacks to more than `most_bytes`
+[[nodiscard]] std::string read_text_file(const std::filesystem::path& path,
+                                         std::size_t most_bytes = most_text_bytes);
+
+}  // namespace elrom::ingest
