@@ -1,0 +1,138 @@
+#include "elrom/model/guard.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/random.hpp"
+
+namespace elrom::model {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// Load drives both flows together; a third input is the same in every case.
+struct Cases {
+  field::InputSchema schema{{{"air", "kg/s", "t/h"}, {"fuel", "kg/s", "kg/s"}, {"d50", "m", "um"}}};
+  MatrixD inputs = MatrixD(40, 3);
+  std::vector<std::string> names;
+  std::vector<double> loads;
+
+  Cases() {
+    base::Random random(base::Seed(3));
+    for (Eigen::Index i = 0; i < inputs.rows(); ++i) {
+      const double load = 0.4 + 0.6 * static_cast<double>(i) / 39;
+      inputs.row(i) << 200 * load + random.uniform(-4, 4), 20 * load + random.uniform(-0.4, 0.4), 180e-6;
+      names.push_back("train_" + std::to_string(i));
+      loads.push_back(load);
+    }
+  }
+  [[nodiscard]] Guard guard() const { return {schema, inputs, names, loads}; }
+};
+
+TEST(Guard, ACaseAmongTheTrainingCasesIsInside) {
+  const Cases cases;
+
+  const auto result = cases.guard().assess(std::array{140.0, 14.0, 180e-6});
+
+  EXPECT_EQ(result.verdict, Verdict::inside);
+  EXPECT_THAT(result.out_of_range, ElementsAre());
+  EXPECT_GT(result.p_value, 0.1);
+}
+
+TEST(Guard, TrainingCasesFindThemselvesAsNearest) {
+  const Cases cases;
+  const auto guard = cases.guard();
+
+  for (Eigen::Index i = 0; i < cases.inputs.rows(); ++i) {
+    const Eigen::RowVectorXd row = cases.inputs.row(i);
+    const auto result = guard.assess({row.data(), 3});
+    ASSERT_EQ(result.nearest.size(), 3U);
+    EXPECT_EQ(result.nearest[0].name, cases.names[static_cast<std::size_t>(i)]);
+    EXPECT_EQ(result.nearest[0].distance, 0);
+    EXPECT_LE(result.nearest[1].distance, result.nearest[2].distance);
+    EXPECT_NE(result.verdict, Verdict::outside);
+  }
+}
+
+TEST(Guard, AnInputFarOutOfRangeIsOutsideAndNamedInTheUsersUnit) {
+  const auto result = Cases().guard().assess(std::array{300.0, 14.0, 180e-6});
+
+  EXPECT_EQ(result.verdict, Verdict::outside);
+  ASSERT_EQ(result.out_of_range.size(), 1U);
+  EXPECT_THAT(result.out_of_range[0], HasSubstr("air 1080 t/h (trained "));
+  EXPECT_THAT(result.reason, HasSubstr("outside the trained range"));
+}
+
+TEST(Guard, JustBeyondTheRangeIsEdge) {
+  const Cases cases;
+  const double high = cases.inputs.col(0).maxCoeff(), width = high - cases.inputs.col(0).minCoeff();
+
+  const auto result =
+      cases.guard().assess(std::array{high + 0.05 * width, cases.inputs.col(1).maxCoeff(), 180e-6});
+
+  EXPECT_EQ(result.verdict, Verdict::edge);
+}
+
+TEST(Guard, AnUnusualCombinationOfInputsInRangeIsOutside) {
+  const auto result = Cases().guard().assess(std::array{100.0, 19.0, 180e-6});
+
+  EXPECT_EQ(result.verdict, Verdict::outside);
+  EXPECT_THAT(result.out_of_range, ElementsAre());
+  EXPECT_THAT(result.reason, HasSubstr("combination is unusual"));
+  EXPECT_DOUBLE_EQ(result.p_value, 1.0 / 41);
+}
+
+TEST(Guard, AnInputThatNeverChangedMayNotChange) {
+  const Cases cases;
+
+  EXPECT_EQ(cases.guard().assess(std::array{140.0, 14.0, 200e-6}).verdict, Verdict::outside);
+  EXPECT_EQ(cases.guard().assess(std::array{140.0, 14.0, 180e-6 * (1 + 1e-12)}).verdict, Verdict::inside);
+}
+
+TEST(Guard, ASingleTrainingCaseKnowsOnlyItself) {
+  const Guard guard(field::InputSchema({{"air", "kg/s", "kg/s"}}), MatrixD::Constant(1, 1, 5.0), {"only"},
+                    {1.0});
+
+  EXPECT_EQ(guard.assess(std::array{5.0}).verdict, Verdict::inside);
+  EXPECT_EQ(guard.assess(std::array{6.0}).verdict, Verdict::outside);
+}
+
+TEST(Guard, RefusesInputsThatAreNotFinite) {
+  const auto guard = Cases().guard();
+
+  EXPECT_THROW((void)guard.assess(std::array{std::nan(""), 14.0, 180e-6}), NumericalError);
+  EXPECT_THROW((void)guard.assess(std::array{140.0, std::numeric_limits<double>::infinity(), 180e-6}),
+               NumericalError);
+}
+
+TEST(Guard, SaysTheSameAfterSaveAndLoad) {
+  const Cases cases;
+  io::TensorFile file;
+  cases.guard().save(file, "guard");
+
+  const auto loaded = Guard::load(file, "guard", cases.schema);
+
+  for (const double air : {60.0, 140.0, 205.0, 1e6}) {
+    const auto a = cases.guard().assess(std::array{air, 14.0, 180e-6}),
+               b = loaded.assess(std::array{air, 14.0, 180e-6});
+    EXPECT_EQ(a.verdict, b.verdict);
+    EXPECT_EQ(a.reason, b.reason);
+    EXPECT_EQ(a.p_value, b.p_value);
+    EXPECT_EQ(a.nearest[0].name, b.nearest[0].name);
+  }
+}
+
+TEST(Guard, RefusesTensorsOfAnotherSchema) {
+  const Cases cases;
+  io::TensorFile file;
+  cases.guard().save(file, "guard");
+
+  EXPECT_THROW((void)Guard::load(file, "guard", field::InputSchema({{"air", "kg/s", "t/h"}})), InputError);
+}
+
+}  // namespace
+}  // namespace elrom::model
