@@ -29,8 +29,8 @@ class SettingsFile : public ::testing::Test {
   }
 
  private:
-  std::filesystem::path path_ = std::filesystem::temp_directory_path() /
-                                ("settings_" + std::to_string(::getpid()) + ".toml");
+  std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() / ("settings_" + std::to_string(::getpid()) + ".toml");
 };
 
 TEST_F(SettingsFile, MissingFileGivesTheStandardLevel) {
@@ -58,17 +58,21 @@ TEST_F(SettingsFile, CommandLineWinsOverTheFile) {
 }
 
 TEST_F(SettingsFile, UnknownKeyIsRefusedWithLineAndNearestKey) {
-  EXPECT_THAT(refusal("seed = 3\n[screen]\nbuild = 4\n"), AllOf(HasSubstr("toml:3"), HasSubstr("screen.builds")));
+  EXPECT_THAT(refusal("seed = 3\n[screen]\nbuild = 4\n"),
+              AllOf(HasSubstr("toml:3"), HasSubstr("screen.builds")));
 }
 
-TEST_F(SettingsFile, UnknownSectionIsRefused) { EXPECT_THAT(refusal("[serch]\ntrials = 4\n"), HasSubstr("serch")); }
+TEST_F(SettingsFile, UnknownSectionIsRefused) {
+  EXPECT_THAT(refusal("[serch]\ntrials = 4\n"), HasSubstr("serch"));
+}
 
 TEST_F(SettingsFile, KeyInTheWrongSectionIsPointedToItsOwn) {
   EXPECT_THAT(refusal("trials = 4\n"), HasSubstr("search.trials"));
 }
 
 TEST_F(SettingsFile, ValueOfAnotherTypeOrRangeIsRefused) {
-  EXPECT_THAT(refusal("[screen]\nbuilds = \"five\"\n"), AllOf(HasSubstr("screen.builds"), HasSubstr("toml:2")));
+  EXPECT_THAT(refusal("[screen]\nbuilds = \"five\"\n"),
+              AllOf(HasSubstr("screen.builds"), HasSubstr("toml:2")));
   EXPECT_THAT(refusal("[screen]\nbuilds = 0\n"), HasSubstr("whole number"));
   EXPECT_THAT(refusal("[split]\nfractions = [0.9, 0.2, 0.1]\n"), HasSubstr("add up to 1"));
   EXPECT_THAT(refusal("[bands]\nedges = [0.3, 0.2]\n"), HasSubstr("ascending"));
@@ -76,12 +80,15 @@ TEST_F(SettingsFile, ValueOfAnotherTypeOrRangeIsRefused) {
   EXPECT_THAT(refusal("", {"effort=fast"}), HasSubstr("quick"));
 }
 
-TEST_F(SettingsFile, BrokenTomlSaysTheLine) { EXPECT_THAT(refusal("seed = 1\nmethod = \n"), HasSubstr("toml:2")); }
+TEST_F(SettingsFile, BrokenTomlSaysTheLine) {
+  EXPECT_THAT(refusal("seed = 1\nmethod = \n"), HasSubstr("toml:2"));
+}
 
 TEST_F(SettingsFile, ResolvedTextReadsBackToItself) {
-  auto settings = read_settings(write("effort = \"quick\"\n[[symmetry.mirror]]\nname = \"m\"\naxis = \"x\"\n"
-                                      "swap = [[\"a_*\", \"b_*\"]]\ncomplement = [\"q\"]\n"
-                                      "[networks]\ntransform = { pressure = \"asinh\" }\n"));
+  auto settings =
+      read_settings(write("effort = \"quick\"\n[[symmetry.mirror]]\nname = \"m\"\naxis = \"x\"\n"
+                          "swap = [[\"a_*\", \"b_*\"]]\ncomplement = [\"q\"]\n"
+                          "[networks]\ntransform = { pressure = \"asinh\" }\n"));
   const auto text = to_toml(settings);
 
   const auto again = read_settings(write(text));

@@ -1,0 +1,84 @@
+#pragma once
+// How well a default network can learn each column of a field: the error that banding sorts columns by.
+//
+// `networks` builds a one-hidden-layer network (relu) for every column, `builds` times, with Adam, the mean
+// squared error and early stopping, many side by side (lane_network.hpp). `fast` answers the same question in
+// closed form: ridge on random features, leaving one case out at a time.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "elrom/base/log.hpp"
+#include "elrom/base/random.hpp"
+#include "elrom/math/matrix.hpp"
+#include "elrom/study/settings.hpp"
+#include "elrom/study/split.hpp"
+
+namespace elrom::study {
+
+/// Records of one field, standardised by the training records (eq. 6.1).
+struct ScreeningData {
+  MatrixF inputs;                     //!< (n_records, n_inputs)
+  MatrixF targets;                    //!< (n_records, n_columns)
+  std::vector<std::int32_t> plane;    //!< (n_records)
+  std::vector<std::int32_t> case_of;  //!< (n_records)
+  std::vector<Part> part;             //!< (n_records)
+  std::size_t n_planes = 0;
+
+  [[nodiscard]] std::vector<std::uint32_t> rows(Part wanted) const;
+  /// Records that judge: those of Part::test, or, where there are none, of Part::validation.
+  [[nodiscard]] std::vector<std::uint32_t> judging_rows() const;
+};
+
+struct ScreeningResult {
+  MatrixD
+      error;  //!< mean over builds of the mean squared error on a plane's test records, (n_planes, n_columns)
+  MatrixD build_error;  //!< mean squared error on all test records, (n_builds, n_columns); 1 row when fast
+  double mean_epochs = 0;
+
+  /// Mean over builds, (n_columns): what bands of scope `field` go by.
+  [[nodiscard]] std::vector<double> column_error() const;
+};
+
+struct ScreeningContext {
+  base::Seed seed{1};
+  int n_threads = 1;
+  Log* log = &silent_log();
+  std::stop_token stop;
+  std::string task = "screen";  ///< for progress
+};
+
+/// Divergence ends in a large finite error (largest_error), never in NaN. The same seed gives the same bits
+/// for any number of threads. @throws Interrupted
+[[nodiscard]] ScreeningResult screen_networks(const ScreeningData& data, const ScreenSettings& settings,
+                                              const ScreeningContext& context);
+inline constexpr double largest_error = 1e6;
+
+/// Leave-one-case-out errors over all records; the ridge is chosen by them. @throws Interrupted
+[[nodiscard]] ScreeningResult screen_fast(const ScreeningData& data, const ScreenSettings& settings,
+                                          const ScreeningContext& context);
+
+/// By settings.method.
+[[nodiscard]] ScreeningResult screen(const ScreeningData& data, const ScreenSettings& settings,
+                                     const ScreeningContext& context);
+
+/// One column's network by itself.
+struct ColumnNetwork {
+  MatrixF hidden;             //!< weights and, last, bias of the hidden layer, (n_units, n_inputs + 1)
+  std::vector<float> output;  //!< weights and, last, bias of the output, (n_units + 1)
+};
+/// Where build `i_build` of column `i_column` starts: uniform in +-1 / sqrt(fan-in), as LibTorch starts its
+/// linear layers.
+[[nodiscard]] ColumnNetwork initial_network(base::Seed seed, std::size_t i_build, std::size_t i_column,
+                                            std::size_t n_inputs, std::size_t n_units);
+/// Order in which one epoch of a build visits its training records; batches are consecutive pieces, the last
+/// one short.
+[[nodiscard]] std::vector<std::uint32_t> epoch_order(base::Seed seed, std::size_t i_build,
+                                                     std::size_t i_epoch,
+                                                     const std::vector<std::uint32_t>& train_rows);
+
+}  // namespace elrom::study
