@@ -1,9 +1,11 @@
 #include "elrom/model/bundle.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include "bundle_info.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 
@@ -60,12 +62,27 @@ void check_consistent(const Bundle& bundle) {
   check(bundle.models.size() == bundle.info.fields.size(), "bundle: a field for every model");
 }
 
-void verify_prefix(const io::TensorFile& file, const std::string& prefix) {
+/// Names of the tensors under "<prefix>/".
+std::vector<std::string> tensors_under(const io::TensorFile& file, const std::string& prefix) {
+  std::vector<std::string> names;
   const auto& tensors = file.tensors();
   for (auto item = tensors.lower_bound(prefix + "/"); item != tensors.end(); ++item) {
-    if (!item->first.starts_with(prefix + "/")) return;
-    file.verify(item->first);
+    if (!item->first.starts_with(prefix + "/")) break;
+    names.push_back(item->first);
   }
+  return names;
+}
+
+void verify_tensors(const io::TensorFile& file, std::vector<std::string> names, int n_threads) {
+  // The longest first, so that the threads end together.
+  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return file.tensor(a).bytes().size() > file.tensor(b).bytes().size();
+  });
+  base::parallel_for(names.size(), n_threads, [&](std::size_t i, int) { file.verify(names[i]); });
+}
+
+void verify_prefix(const io::TensorFile& file, const std::string& prefix) {
+  verify_tensors(file, tensors_under(file, prefix), 1);
 }
 
 }  // namespace
@@ -120,8 +137,19 @@ field::Mesh BundleReader::mesh(bool verify) const {
   return mesh;
 }
 
-Guard BundleReader::guard() const {
-  verify_prefix(file_, "guard");
+void BundleReader::verify(std::span<const field::FieldInfo> fields, bool with_uncertainty,
+                          int n_threads) const {
+  auto names = tensors_under(file_, "guard");
+  for (const auto& info : fields) {
+    for (auto& name : tensors_under(file_, field_prefix(info.name))) names.push_back(std::move(name));
+    if (!with_uncertainty) continue;
+    for (auto& name : tensors_under(file_, uncertainty_prefix(info.name))) names.push_back(std::move(name));
+  }
+  verify_tensors(file_, std::move(names), n_threads);
+}
+
+Guard BundleReader::guard(bool verify) const {
+  if (verify) verify_prefix(file_, "guard");
   return Guard::load(file_, "guard", info_.schema);
 }
 

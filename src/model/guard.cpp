@@ -31,11 +31,6 @@ struct Range {
   }
 };
 
-Range range_of(const MatrixD& inputs, std::size_t input) {
-  const auto column = inputs.col(static_cast<Eigen::Index>(input));
-  return {column.minCoeff(), column.maxCoeff()};
-}
-
 /// Standard deviation over the training cases, the unit of distance in one input.
 double scale_of(const MatrixD& inputs, std::size_t input) {
   const auto column = inputs.col(static_cast<Eigen::Index>(input)).array();
@@ -125,6 +120,7 @@ Guard::Guard(const field::InputSchema& schema, const MatrixD& inputs, std::vecto
   check(static_cast<std::size_t>(inputs_.cols()) == schema_.size(), "guard: one column an input");
   if (n == 0 || !inputs_.allFinite())
     throw InputError("the guard needs finite inputs of at least one training case");
+  find_ranges();
   const auto scales = scales_of(inputs_);
   for (std::size_t i = 0; n > 1 && i < n; ++i) {
     auto others = distances(inputs_, scales, inputs_.row(static_cast<Eigen::Index>(i)));
@@ -134,6 +130,22 @@ Guard::Guard(const field::InputSchema& schema, const MatrixD& inputs, std::vecto
   std::sort(self_distance_.begin(), self_distance_.end());
 }
 
+void Guard::find_ranges() {
+  for (Eigen::Index i = 0; i < inputs_.cols(); ++i) {
+    low_.push_back(inputs_.col(i).minCoeff());
+    high_.push_back(inputs_.col(i).maxCoeff());
+  }
+}
+
+void Guard::hold(std::span<const double> inputs, std::span<double> held) const {
+  check(inputs.size() == low_.size() && held.size() == inputs.size(), "guard: one value an input");
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const double width = high_[i] - low_[i];
+    const double reach = width > 0 ? width : constant_scale * std::max(std::abs(low_[i]), 1e-12);
+    held[i] = std::clamp(inputs[i], low_[i] - reach, high_[i] + reach);
+  }
+}
+
 Assessment Guard::assess(std::span<const double> inputs) const {
   check(inputs.size() == schema_.size() && inputs_.rows() > 0, "guard: one value an input");
   const Eigen::Map<const Eigen::RowVectorXd> point(inputs.data(), static_cast<Eigen::Index>(inputs.size()));
@@ -141,7 +153,7 @@ Assessment Guard::assess(std::span<const double> inputs) const {
   Assessment result;
   double worst_excess = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const auto range = range_of(inputs_, i);
+    const Range range{low_[i], high_[i]};
     const double excess = range.excess(inputs[i]);
     if (excess > 0) result.out_of_range.push_back(range_text(schema_[i], inputs[i], range));
     worst_excess = std::max(worst_excess, excess);
@@ -194,6 +206,7 @@ Guard Guard::load(const io::TensorFile& file, const std::string& prefix, const f
     throw InputError(
         {.what = "broken guard", .where = where, .expected = "finite inputs of at least one training case"});
   }
+  guard.find_ranges();
   return guard;
 }
 

@@ -2,12 +2,15 @@
 
 #include <vector>
 
+#include "elrom/model/banded_networks.hpp"
+
 namespace elrom::model {
 
-// A new kind: declare its loader here and add its line to the table.
-
+// A new kind: include its header and add its line to the table.
 std::span<const ModelKind> model_kinds() {
-  static const std::vector<ModelKind> kinds = {};
+  static const std::vector<ModelKind> kinds = {
+      {"networks", BandedNetworks::load},
+  };
   return kinds;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,10 @@ class BundleReader {
   [[nodiscard]] std::size_t n_columns() const { return n_columns_; }
   [[nodiscard]] const std::string& mesh_digest() const { return mesh_digest_; }
   [[nodiscard]] field::Mesh mesh(bool verify = true) const;
-  [[nodiscard]] Guard guard() const;
+  [[nodiscard]] Guard guard(bool verify = true) const;
+  /// Compares the digests of everything that prediction of `fields` reads, on n_threads, so that loading need
+  /// not.
+  void verify(std::span<const field::FieldInfo> fields, bool with_uncertainty, int n_threads) const;
   /// @param verify compares the digests of the tensors it reads
   [[nodiscard]] std::unique_ptr<FieldModel> model(const std::string& field, bool verify = true) const;
   /// nullptr when the bundle has none for that field

@@ -16,13 +16,17 @@ namespace elrom::model {
 /// What to load and compute; empty lists stand for all.
 struct Selection {
   std::vector<std::string> fields;
-  std::vector<std::int32_t> planes;    ///< ascending
+  std::vector<std::int32_t> planes;  ///< ascending
   bool best_build_only = false;
   std::optional<double> interval_level;  ///< half-widths of the prediction interval are computed when set
   bool verify = true;                    ///< compare digests of what is read
+  int n_threads = 1;                     ///< used while loading
 };
 
-/// Thread rule: const use from any number of threads, each with a Scratch of its own.
+/// Inputs beyond the trained range are held at one trained width outside it before a model sees them
+/// (Guard::hold): far extrapolation is noise at best, and so every field stays finite. The guard judges, and
+/// reports, the inputs as given. Thread rule: const use from any number of threads, each with a Scratch of
+/// its own.
 class Predictor {
  public:
   /// Loads just the models that `selection` names. @throws InputError, UsageError (unknown field or plane)
@@ -32,11 +36,13 @@ class Predictor {
 
   struct Scratch {
     std::vector<Workspace> workspaces;  ///< one a thread
+    std::vector<double> held_inputs;
   };
 
   [[nodiscard]] const BundleReader& bundle() const;
-  [[nodiscard]] const std::vector<field::FieldInfo>& fields() const;   ///< selected, in the bundle's order
-  [[nodiscard]] std::span<const std::int32_t> planes() const;          ///< selected
+  [[nodiscard]] const Guard& guard() const;
+  [[nodiscard]] const std::vector<field::FieldInfo>& fields() const;  ///< selected, in the bundle's order
+  [[nodiscard]] std::span<const std::int32_t> planes() const;         ///< selected
   [[nodiscard]] std::size_t n_columns() const;
   /// Values of one case: fields() x planes() x n_columns.
   [[nodiscard]] std::size_t size() const { return fields().size() * planes().size() * n_columns(); }
@@ -44,9 +50,10 @@ class Predictor {
   /// @param inputs SI, in the bundle's schema order, (n_inputs)
   /// @param values (size()), field by field, SI, inside the fields' physical bounds
   /// @param half_width (size()) when interval_level is set, else empty
-  /// @throws NumericalError when an input is not finite
-  void predict(std::span<const double> inputs, std::span<float> values, std::span<float> half_width, Scratch& scratch,
-               int n_threads = 1) const;
+  /// From the second call on nothing is allocated (beyond starting threads, with n_threads > 1).
+  /// @throws NumericalError when an input is not finite, or a model's result is not
+  void predict(std::span<const double> inputs, std::span<float> values, std::span<float> half_width,
+               Scratch& scratch, int n_threads = 1) const;
 
  private:
   struct Impl;

@@ -1,0 +1,207 @@
+#include "elrom/model/predictor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/parallel.hpp"
+#include "elrom/base/text.hpp"
+
+namespace elrom::model {
+namespace {
+
+/// Planes are shared out among threads in multiples of this: the models' kernels work on whole vectors of
+/// planes.
+constexpr std::size_t plane_grain = 16;
+
+std::vector<field::FieldInfo> chosen_fields(const BundleReader& bundle,
+                                            const std::vector<std::string>& wanted) {
+  const auto& all = bundle.info().fields;
+  if (wanted.empty()) return all;
+  std::vector<std::string> names;
+  for (const auto& info : all) names.push_back(info.name);
+  for (const auto& name : wanted) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw UsageError({.what = "unknown field '" + name + "'", .advice = base::name_advice(name, names)});
+  }
+  std::vector<field::FieldInfo> chosen;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const field::FieldInfo& info) {
+    return std::find(wanted.begin(), wanted.end(), info.name) != wanted.end();
+  });
+  return chosen;
+}
+
+std::vector<std::int32_t> chosen_planes(std::size_t n_planes, std::vector<std::int32_t> wanted) {
+  if (wanted.empty()) {
+    for (std::size_t plane = 0; plane < n_planes; ++plane) wanted.push_back(static_cast<std::int32_t>(plane));
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const bool ascending = i == 0 || wanted[i] > wanted[i - 1];
+    if (ascending && wanted[i] >= 0 && static_cast<std::size_t>(wanted[i]) < n_planes) continue;
+    throw UsageError({.what = "plane " + std::to_string(wanted[i]) + " cannot be asked for",
+                      .expected = "planes from 0 to " + std::to_string(n_planes - 1) + ", ascending"});
+  }
+  return wanted;
+}
+
+/// Bounds of a field in the cells' own precision; a lower bound of a length (diameter) is exclusive.
+struct Bounds {
+  float low = -std::numeric_limits<float>::max(), high = std::numeric_limits<float>::max();
+
+  explicit Bounds(const field::FieldInfo& info) {
+    if (info.lower) low = inside(*info.lower, high, info.unit == "m");
+    if (info.upper) high = inside(*info.upper, low, false);
+  }
+
+  /// @return false when any value is not finite
+  [[nodiscard]] bool enforce(std::span<float> values) const {
+    bool finite = true;
+    for (float& value : values) {
+      finite &= std::abs(value) <= std::numeric_limits<float>::max();
+      value = std::min(std::max(value, low), high);
+    }
+    return finite;
+  }
+
+ private:
+  static float inside(double bound, float towards, bool exclusive) {
+    const auto rounded = static_cast<float>(bound);
+    const bool beyond = towards > rounded ? rounded < bound : rounded > bound;
+    if (exclusive && bound == 0) return std::numeric_limits<float>::min();
+    return beyond || exclusive ? std::nextafter(rounded, towards) : rounded;
+  }
+};
+
+/// A piece of work: some planes of one field.
+struct Unit {
+  std::size_t i_field, first_plane, n_planes;
+};
+
+/// Whole fields as long as they share out evenly; what is left over is cut into blocks of planes.
+std::vector<Unit> units_for(std::size_t n_fields, std::size_t n_planes, std::size_t n_threads) {
+  std::vector<Unit> units;
+  const std::size_t n_whole = n_fields / n_threads * n_threads;
+  const std::size_t share = (n_planes + n_threads - 1) / n_threads;
+  const std::size_t block = std::max(plane_grain, share / plane_grain * plane_grain);
+  for (std::size_t i = 0; i < n_fields; ++i) {
+    std::size_t first = 0;
+    while (i >= n_whole && n_planes - first > block + plane_grain) {
+      units.push_back({i, first, block});
+      first += block;
+    }
+    units.push_back({i, first, n_planes - first});
+  }
+  return units;
+}
+
+}  // namespace
+
+struct Predictor::Impl {
+  BundleReader bundle;
+  Selection selection;
+  Guard guard;
+  std::vector<field::FieldInfo> fields;
+  std::vector<std::int32_t> planes;
+  std::vector<Bounds> bounds;
+  std::vector<std::unique_ptr<FieldModel>> models;
+  std::vector<std::unique_ptr<Uncertainty>> uncertainty;
+  std::vector<float> quantiles;  //!< of the asked level, (n_fields)
+  std::vector<Unit> serial_units;
+
+  Impl(const std::filesystem::path& path, Selection wanted);
+  void load(std::size_t i_field);
+  void compute(const Unit& unit, std::span<const double> inputs, std::span<float> values,
+               std::span<float> half_width, Workspace& workspace) const;
+};
+
+Predictor::Impl::Impl(const std::filesystem::path& path, Selection wanted)
+    : bundle(path),
+      selection(std::move(wanted)),
+      fields(chosen_fields(bundle, selection.fields)),
+      planes(chosen_planes(bundle.n_planes(), selection.planes)),
+      models(fields.size()),
+      uncertainty(fields.size()),
+      quantiles(fields.size(), 0.0F),
+      serial_units(units_for(fields.size(), planes.size(), 1)) {
+  const bool with_uncertainty = selection.interval_level.has_value();
+  if (selection.verify) bundle.verify(fields, with_uncertainty, selection.n_threads);
+  guard = bundle.guard(false);
+  for (const auto& info : fields) bounds.emplace_back(info);
+  base::parallel_for(fields.size(), selection.n_threads, [&](std::size_t i, int) { load(i); });
+}
+
+void Predictor::Impl::load(std::size_t i_field) {
+  const auto& name = fields[i_field].name;
+  models[i_field] = bundle.model(name, false);
+  if (!selection.interval_level) return;
+  uncertainty[i_field] = bundle.uncertainty(name, false);
+  if (!uncertainty[i_field]) {
+    throw UsageError({.what = "no prediction intervals for field '" + name + "'",
+                      .where = bundle.file().where(),
+                      .advice = "train with more cases, or leave out the level"});
+  }
+  quantiles[i_field] = static_cast<float>(uncertainty[i_field]->quantile(*selection.interval_level));
+}
+
+void Predictor::Impl::compute(const Unit& unit, std::span<const double> inputs, std::span<float> values,
+                              std::span<float> half_width, Workspace& workspace) const {
+  const std::size_t n_columns = bundle.n_columns();
+  const std::size_t first = (unit.i_field * planes.size() + unit.first_plane) * n_columns;
+  const std::size_t n = unit.n_planes * n_columns;
+  const auto asked = std::span(planes).subspan(unit.first_plane, unit.n_planes);
+  const auto own = values.subspan(first, n);
+  models[unit.i_field]->predict({inputs, asked, selection.best_build_only}, own, {}, workspace);
+  if (!bounds[unit.i_field].enforce(own)) {
+    throw NumericalError({.what = "prediction is not finite", .where = "field " + fields[unit.i_field].name});
+  }
+  if (half_width.empty()) return;
+  const auto width = half_width.subspan(first, n);
+  uncertainty[unit.i_field]->scale(asked, width);
+  for (float& value : width) value *= quantiles[unit.i_field];
+}
+
+Predictor::Predictor(const std::filesystem::path& bundle, Selection selection)
+    : impl_(std::make_unique<Impl>(bundle, std::move(selection))) {}
+Predictor::~Predictor() = default;
+Predictor::Predictor(Predictor&&) noexcept = default;
+
+const BundleReader& Predictor::bundle() const { return impl_->bundle; }
+const Guard& Predictor::guard() const { return impl_->guard; }
+const std::vector<field::FieldInfo>& Predictor::fields() const { return impl_->fields; }
+std::span<const std::int32_t> Predictor::planes() const { return impl_->planes; }
+std::size_t Predictor::n_columns() const { return impl_->bundle.n_columns(); }
+
+void Predictor::predict(std::span<const double> inputs, std::span<float> values, std::span<float> half_width,
+                        Scratch& scratch, int n_threads) const {
+  const std::size_t n_inputs = impl_->bundle.info().schema.size();
+  check(inputs.size() == n_inputs, "predictor: one value an input");
+  check(values.size() == size(), "predictor: room for the values");
+  check(half_width.size() == (impl_->selection.interval_level ? size() : 0),
+        "predictor: room for the half-widths");
+  for (std::size_t i = 0; i < n_inputs; ++i) {
+    if (std::isfinite(inputs[i])) continue;
+    throw NumericalError(
+        {.what = "not a finite number", .where = "input " + impl_->bundle.info().schema[i].name});
+  }
+  scratch.held_inputs.resize(n_inputs);
+  impl_->guard.hold(inputs, scratch.held_inputs);
+  n_threads = std::max(1, n_threads);
+  if (scratch.workspaces.size() < static_cast<std::size_t>(n_threads)) {
+    scratch.workspaces.resize(static_cast<std::size_t>(n_threads));
+  }
+  if (n_threads == 1) {
+    for (const auto& unit : impl_->serial_units) {
+      impl_->compute(unit, scratch.held_inputs, values, half_width, scratch.workspaces[0]);
+    }
+    return;
+  }
+  const auto units = units_for(fields().size(), planes().size(), static_cast<std::size_t>(n_threads));
+  base::parallel_for(units.size(), n_threads, [&](std::size_t i, int worker) {
+    impl_->compute(units[i], scratch.held_inputs, values, half_width,
+                   scratch.workspaces[static_cast<std::size_t>(worker)]);
+  });
+}
+
+}  // namespace elrom::model
