@@ -5,11 +5,26 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(ZLIB REQUIRED)
-find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+
+# Static where the archives are there: a process that lives for twenty milliseconds cannot spend ten on loading libraries.
+set(OPENSSL_USE_STATIC_LIBS TRUE)
+find_package(OpenSSL QUIET COMPONENTS Crypto)
+if(NOT OPENSSL_FOUND)
+  set(OPENSSL_USE_STATIC_LIBS FALSE)
+  find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+endif()
 
 # The serial HDF5, by its own pkg-config file: VTK's packages bring the MPI build, which CMake's module may pick.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HDF5_SERIAL REQUIRED IMPORTED_TARGET GLOBAL hdf5-serial)
+# The shared one brings some forty libraries of its network drivers along; the archive's are left out by the linker.
+find_library(ELROM_HDF5_ARCHIVE NAMES libhdf5_serial.a HINTS ${HDF5_SERIAL_LIBRARY_DIRS})
+find_library(ELROM_SZ_ARCHIVE NAMES libsz.a)
+find_library(ELROM_AEC_ARCHIVE NAMES libaec.a)
+if(ELROM_HDF5_ARCHIVE AND ELROM_SZ_ARCHIVE AND ELROM_AEC_ARCHIVE)
+  set_target_properties(PkgConfig::HDF5_SERIAL PROPERTIES INTERFACE_LINK_LIBRARIES
+    "${ELROM_HDF5_ARCHIVE};${ELROM_SZ_ARCHIVE};${ELROM_AEC_ARCHIVE};ZLIB::ZLIB;OpenSSL::Crypto;${CMAKE_DL_LIBS};m")
+endif()
 
 if(NOT elrom_FIND_COMPONENTS OR "study" IN_LIST _elrom_wanted)
   pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET GLOBAL nlopt)
