@@ -40,6 +40,7 @@ struct TrainingProblem {
 class TrainingMonitor {
  public:
   virtual ~TrainingMonitor() = default;
+  /// @param epoch ended epochs, from 1
   /// @return false to give this training up (pruned)
   virtual bool keep_going(int epoch, double validation_mse) = 0;
 };
