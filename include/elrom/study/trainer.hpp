@@ -1,6 +1,6 @@
 #pragma once
-// The seam between the study and the machine that trains one network: the search is tested with a fake trainer, and
-// LibTorch's headers stay in train/torch.
+// The seam between the study and the machine that trains one network: the search is tested with a fake
+// trainer, and LibTorch's headers stay in train/torch.
 
 #include <filesystem>
 #include <memory>
@@ -15,10 +15,10 @@ namespace elrom::study {
 
 struct Hyperparameters {
   double learning_rate = 1e-3;
-  int n_layers = 2;        ///< hidden layers
-  int n_units = 64;        ///< in each hidden layer
+  int n_layers = 2;  ///< hidden layers
+  int n_units = 64;  ///< in each hidden layer
   int batch_size = 64;
-  double weight_decay = 0; ///< decoupled (AdamW)
+  double weight_decay = 0;  ///< decoupled (AdamW)
   double dropout = 0;
   model::Activation activation = model::Activation::relu;
   bool operator==(const Hyperparameters&) const = default;
@@ -26,7 +26,7 @@ struct Hyperparameters {
 
 struct TrainingBudget {
   int max_epochs = 200;
-  int patience = 20;       ///< epochs without a better validation error before stopping
+  int patience = 20;  ///< epochs without a better validation error before stopping
 };
 
 /// Standardised records. With a mask only the masked-in targets count: mask(record's plane, output).
@@ -46,12 +46,15 @@ class TrainingMonitor {
 };
 
 struct TrainingResult {
-  model::Network network;       ///< the weights of the best epoch; empty when diverged
-  double validation_mse = 0;    ///< of the best epoch, standardised units
+  model::Network network;     ///< the weights of the best epoch; empty when diverged
+  double validation_mse = 0;  ///< of the best epoch, standardised units
   double train_mse = 0;
   int epochs = 0;
   bool pruned = false;
-  bool diverged = false;        ///< a loss that was not finite: the trial loses, never a NaN winner
+  bool diverged = false;  ///< a loss that was not finite: the trial loses, never a NaN winner (scores are the
+                          ///< largest finite number)
+  bool backed_off =
+      false;  ///< after a first such loss it was begun again at a tenth of the rate: tell the user
 };
 
 /// Thread rule: train() may run on several threads at a time; each call uses one thread.
@@ -61,9 +64,10 @@ class Trainer {
   [[nodiscard]] virtual std::string name() const = 0;
   /// The same arguments give the same bits. @param checkpoint file to resume from and to save to; empty: none
   /// @throws Interrupted on `stop`
-  [[nodiscard]] virtual TrainingResult train(const TrainingProblem& problem, const Hyperparameters& hyperparameters,
-                                             const TrainingBudget& budget, base::Seed seed, TrainingMonitor* monitor,
-                                             const std::stop_token& stop,
+  [[nodiscard]] virtual TrainingResult train(const TrainingProblem& problem,
+                                             const Hyperparameters& hyperparameters,
+                                             const TrainingBudget& budget, base::Seed seed,
+                                             TrainingMonitor* monitor, const std::stop_token& stop,
                                              const std::filesystem::path& checkpoint = {}) const = 0;
 };
 
