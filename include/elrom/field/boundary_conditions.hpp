@@ -45,14 +45,18 @@ struct CaseInputs {
 /// The schema that a cases file declares by its headings (`name [unit]`), in the file's order.
 [[nodiscard]] InputSchema read_schema(const std::filesystem::path& cases_csv);
 
-/// Reads a table of cases: columns `case`, `load` (optional) and every input of `schema` as `name [unit]`, in any order.
-/// Values come back in SI. Also takes JSON ({"case": ..., "load": ..., "inputs": {"primary_air [kg/s]": 161.1, ...}} or a
-/// list of such) and TOML (the same keys; [[cases]] for several), told apart by the file's ending.
-/// @throws InputError for a missing or unknown input (with the nearest name), a unit of another dimension, a value that
+/// Reads a table of cases: columns `case`, `load` (optional) and every input of `schema` as `name [unit]`, in
+/// any order. Values come back in SI. Also takes JSON ({"case": ..., "load": ..., "inputs": {"primary_air
+/// [kg/s]": 161.1, ...}} or a list of such) and TOML (the same keys; [[cases]] for several), told apart by
+/// the file's ending.
+/// @throws InputError for a missing or unknown input (with the nearest name), a unit of another dimension, a
+/// value that
 ///         is no finite number, a repeated case name; the message says file, line and column
-[[nodiscard]] std::vector<CaseInputs> read_cases(const std::filesystem::path& path, const InputSchema& schema);
+[[nodiscard]] std::vector<CaseInputs> read_cases(const std::filesystem::path& path,
+                                                 const InputSchema& schema);
 
-/// Applies "name=value" or "name=value unit" (display unit when none is given) to a case. @throws UsageError / InputError
+/// Applies "name=value" or "name=value unit" (display unit when none is given) to a case. @throws UsageError
+/// / InputError
 void apply_setting(CaseInputs& inputs, std::string_view setting, const InputSchema& schema);
 
 }  // namespace elrom::field

@@ -1,7 +1,7 @@
 #pragma once
 // Snapshot store `snapshots.h5`: cases x fields on the reduced mesh, with boundary conditions and provenance.
-// Layout in data/FORMATS.md (kind "elrom-snapshots"). One dataset a field, chunked by case, so that one field of all
-// cases streams without touching the rest.
+// Layout in data/FORMATS.md (kind "elrom-snapshots"). One dataset a field, chunked by case, so that one field
+// of all cases streams without touching the rest.
 
 #include <cstdint>
 #include <filesystem>
@@ -24,6 +24,9 @@ struct CaseRecord {
   std::string source;         ///< file name it was read from
   std::string source_digest;  ///< SHA-256 of that file
   double averaging_window_s = 0;
+  std::vector<double> resampling_error;  ///< of going to the reduced mesh and back: rms over the field's
+                                         ///< standard deviation, (n_fields); empty: not resampled
+  std::string content_digest;  ///< SHA-256 of the fields on the reduced mesh; the writer fills it in
 };
 
 /// A case on the reduced mesh, on its way into a store.
@@ -50,7 +53,8 @@ class SnapshotStore {
   [[nodiscard]] std::vector<std::size_t> find(std::string_view pattern) const;
   /// SI, (cases.size(), n_inputs).
   [[nodiscard]] MatrixD inputs(std::span<const std::size_t> cases) const;
-  /// One field of some cases, (cases.size(), n_cells), SI; streams case by case. @throws InputError (checksum, name)
+  /// One field of some cases, (cases.size(), n_cells), SI; streams case by case. @throws InputError
+  /// (checksum, name)
   [[nodiscard]] MatrixF read(std::string_view field, std::span<const std::size_t> cases) const;
   /// SHA-256 over names, inputs and per-case content digests: the store's identity for study stages.
   [[nodiscard]] std::string digest(std::span<const std::size_t> cases) const;
@@ -62,12 +66,14 @@ class SnapshotStore {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Creates a store or adds cases to one, as a new file that replaces the old one at commit(): a crash or an error before
-/// leaves the old store untouched. Holds the store's lock.
+/// Creates a store or adds cases to one, as a new file that replaces the old one at commit(): a crash or an
+/// error before leaves the old store untouched. Holds the store's lock.
 class SnapshotWriter {
  public:
-  /// New store at `path` (nothing there yet), or, with the same mesh, schema and fields, an addition to the one there.
-  /// @throws InputError "store of another mesh" / schema / field list, with both digests or the first difference
+  /// New store at `path` (nothing there yet), or, with the same mesh, schema and fields, an addition to the
+  /// one there.
+  /// @throws InputError "store of another mesh" / schema / field list, with both digests or the first
+  /// difference
   SnapshotWriter(const std::filesystem::path& path, const Mesh& mesh, const InputSchema& schema,
                  const std::vector<FieldInfo>& fields);
   ~SnapshotWriter();

@@ -1,0 +1,159 @@
+#include "cases_tree.hpp"
+
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "case_entries.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/base/units.hpp"
+#include "elrom/io/csv.hpp"
+
+namespace elrom::field::detail {
+
+void check_case_key(const std::string& key, const std::string& where) {
+  const auto name = base::split_unit(key).name;
+  if (name == "case" || name == "load" || name == "inputs") return;
+  throw InputError({.what = "unknown key '" + key + "'",
+                    .where = where,
+                    .advice = base::name_advice(key, {"case", "load", "inputs"})});
+}
+
+CaseInputs resolve(const RawCase& raw, const InputSchema& schema) {
+  check_case_name(raw.name, raw.where);
+  std::vector<std::string> headings;
+  for (const auto& [key, value] : raw.inputs) headings.push_back(key);
+  const auto columns = match_columns(headings, schema, raw.where);
+  CaseInputs one{.name = raw.name, .load = std::nan("")};
+  if (raw.load)
+    one.load = checked_load(raw.load->second, base::split_unit(raw.load->first).symbol, raw.where);
+  for (std::size_t i = 0; i < schema.size(); ++i) {
+    const auto& [key, value] = raw.inputs[columns.position[i]];
+    if (!std::isfinite(value))
+      throw InputError({.what = "'" + key + "' is no finite number", .where = raw.where});
+    one.values.push_back(to_si(value, columns.symbol[i], schema[i], raw.where));
+  }
+  return one;
+}
+
+namespace {
+
+using Json = nlohmann::json;
+
+[[noreturn]] void fail(std::string what, const std::string& where, std::string expected = {}) {
+  throw InputError({.what = std::move(what), .where = where, .expected = std::move(expected)});
+}
+
+std::string case_place(const std::string& file, const std::string& name, std::size_t i) {
+  return file + ", case " + (name.empty() ? std::to_string(i + 1) : "'" + name.substr(0, 60) + "'");
+}
+
+// A repeated key would silently win over its twin, so it is looked for while parsing.
+Json parse_json(const std::string& text, const std::string& where) {
+  std::vector<std::set<std::string>> open;
+  const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    constexpr int deepest = 16;
+    if (depth > deepest) fail("nested too deeply", where);
+    if (event == Json::parse_event_t::object_start) open.emplace_back();
+    if (event == Json::parse_event_t::object_end) open.pop_back();
+    if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second) {
+      fail("key '" + parsed.get<std::string>() + "' appears twice", where);
+    }
+    return true;
+  };
+  try {
+    return Json::parse(text, watch);
+  } catch (const Json::exception& error) {
+    fail(std::string("not JSON (") + error.what() + ")", where);
+  }
+}
+
+RawCase raw_case(const Json& node, const std::string& file, std::size_t i) {
+  RawCase raw{.where = case_place(file, "", i)};
+  if (!node.is_object()) fail("a case that is no object", raw.where, "{\"case\": ..., \"inputs\": {...}}");
+  if (!node.contains("case") || !node["case"].is_string()) fail("missing text 'case'", raw.where);
+  raw.name = node["case"].get<std::string>();
+  raw.where = case_place(file, raw.name, i);
+  for (const auto& [key, value] : node.items()) {
+    check_case_key(key, raw.where);
+    if (base::split_unit(key).name != "load" || value.is_null()) continue;
+    if (!value.is_number()) fail("'" + key + "' is no number", raw.where);
+    raw.load = {key, value.get<double>()};
+  }
+  if (!node.contains("inputs") || !node["inputs"].is_object()) fail("missing object 'inputs'", raw.where);
+  for (const auto& [key, value] : node["inputs"].items()) {
+    if (!value.is_number()) fail("'" + key + "' is no number", raw.where);
+    raw.inputs.emplace_back(key, value.get<double>());
+  }
+  return raw;
+}
+
+RawCase raw_case(const toml::table& node, const std::string& file, std::size_t i) {
+  RawCase raw{.where = case_place(file, "", i)};
+  const auto name = node["case"].value_exact<std::string>();
+  if (!name) fail("missing text 'case'", raw.where);
+  raw.name = *name;
+  raw.where = case_place(file, raw.name, i);
+  for (const auto& [key, value] : node) {
+    const std::string text(key.str());
+    if (text == "cases") fail("'case' and [[cases]] in one file", raw.where);
+    check_case_key(text, raw.where);
+    if (base::split_unit(text).name != "load") continue;
+    if (!value.is_number()) fail("'" + text + "' is no number", raw.where);
+    raw.load = {text, *value.value<double>()};
+  }
+  const auto* inputs = node["inputs"].as_table();
+  if (inputs == nullptr) fail("missing table 'inputs'", raw.where);
+  for (const auto& [key, value] : *inputs) {
+    if (!value.is_number()) fail("'" + std::string(key.str()) + "' is no number", raw.where);
+    raw.inputs.emplace_back(std::string(key.str()), *value.value<double>());
+  }
+  return raw;
+}
+
+toml::table parse_toml(const std::string& text, const std::string& where) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    fail(std::string("not TOML (") + std::string(error.description()) + ")",
+         where + ":" + std::to_string(error.source().begin.line));
+  }
+}
+
+}  // namespace
+
+std::vector<CaseInputs> read_cases_json(const std::filesystem::path& path, const InputSchema& schema) {
+  const auto file = path.string();
+  const auto root = parse_json(io::read_small_text(path), file);
+  const bool wrapped = root.is_object() && root.contains("cases");
+  const Json& list = wrapped ? root["cases"] : root;
+  std::vector<CaseInputs> cases;
+  if (list.is_array()) {
+    for (std::size_t i = 0; i < list.size(); ++i)
+      cases.push_back(resolve(raw_case(list[i], file, i), schema));
+  } else {
+    cases.push_back(resolve(raw_case(list, file, 0), schema));
+  }
+  return cases;
+}
+
+std::vector<CaseInputs> read_cases_toml(const std::filesystem::path& path, const InputSchema& schema) {
+  const auto file = path.string();
+  const auto root = parse_toml(io::read_small_text(path), file);
+  if (!root.contains("cases")) return {resolve(raw_case(root, file, 0), schema)};
+  const auto* list = root["cases"].as_array();
+  if (list == nullptr || root.size() != 1)
+    fail("'cases' is no list of tables alone in its file", file, "[[cases]]");
+  std::vector<CaseInputs> cases;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const auto* table = (*list)[i].as_table();
+    if (table == nullptr) fail("a case that is no table", case_place(file, "", i));
+    cases.push_back(resolve(raw_case(*table, file, i), schema));
+  }
+  return cases;
+}
+
+}  // namespace elrom::field::detail

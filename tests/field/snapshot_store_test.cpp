@@ -1,0 +1,149 @@
+#include "elrom/field/snapshot_store.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/throws.hpp"
+
+namespace elrom::field {
+namespace {
+
+using ::testing::ElementsAre;
+
+class Store : public ::testing::Test {
+ protected:
+  Snapshot snapshot(const std::string& name, float value) const {
+    Snapshot s;
+    s.record.inputs = {name, 0.5, {value, 300}};
+    s.record.source = name + ".h5";
+    s.record.averaging_window_s = 24;
+    s.fields = MatrixF::Constant(2, static_cast<Eigen::Index>(mesh_.n_cells()), value);
+    s.fields(1, 3) = -value;
+    return s;
+  }
+  void write(const std::vector<std::pair<std::string, float>>& cases) const {
+    SnapshotWriter writer(path_, mesh_, schema_, fields_);
+    for (const auto& [name, value] : cases) writer.add(snapshot(name, value));
+    writer.commit();
+  }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "s.h5";
+  Mesh mesh_ = make_furnace_mesh({}, 2, 3, 4);
+  InputSchema schema_{{{"primary_air", "kg/s", "t/h"}, {"gas_temperature", "K", "degC"}}};
+  std::vector<FieldInfo> fields_{field_info("pressure"), field_info("solid_velocity_z")};
+};
+
+TEST_F(Store, GivesBackWhatWasAdded) {
+  write({{"a", 1}, {"b", 2}, {"c", 3}});
+
+  const auto store = SnapshotStore::open(path_);
+  const std::vector<std::size_t> wanted{2, 0};
+
+  EXPECT_EQ(store.n_cases(), 3U);
+  EXPECT_EQ(store.schema(), schema_);
+  EXPECT_EQ(store.mesh().digest(), mesh_.digest());
+  EXPECT_EQ(store.fields()[1].name, "solid_velocity_z");
+  EXPECT_EQ(store.fields()[1].parity, Parity::vector_z);
+  EXPECT_EQ(store.cases()[1].source, "b.h5");
+  EXPECT_TRUE(store.cases()[1].resampling_error.empty());
+  const auto values = store.read("solid_velocity_z", wanted);
+  EXPECT_EQ(values.rows(), 2);
+  EXPECT_EQ(values(0, 0), 3);
+  EXPECT_EQ(values(1, 3), -1);
+  EXPECT_EQ(store.inputs(wanted)(0, 0), 3);
+}
+
+TEST_F(Store, GrowsByLaterWriters) {
+  write({{"a", 1}});
+  write({{"b", 2}});
+
+  const auto store = SnapshotStore::open(path_);
+
+  EXPECT_THAT(store.find("*"), ElementsAre(0, 1));
+  EXPECT_EQ(store.read("pressure", store.find("b"))(0, 5), 2);
+}
+
+TEST_F(Store, WithoutCommitTheOldStoreIsUntouched) {
+  write({{"a", 1}});
+  const auto before = base::sha256_file(path_);
+  {
+    SnapshotWriter writer(path_, mesh_, schema_, fields_);
+    writer.add(snapshot("b", 2));
+  }
+
+  EXPECT_EQ(base::sha256_file(path_), before);
+  std::vector<std::string> left;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+    left.push_back(entry.path().filename());
+  EXPECT_THAT(left, ::testing::UnorderedElementsAre("s.h5", ".s.h5.lock"));
+}
+
+TEST_F(Store, RefusesASecondCaseOfTheSameNameOrContent) {
+  write({{"a", 1}});
+  SnapshotWriter writer(path_, mesh_, schema_, fields_);
+
+  EXPECT_ERROR(InputError, "case 'a' is already in the store", writer.add(snapshot("a", 2)));
+  EXPECT_ERROR(InputError, "case 'b' has the same fields as case 'a'", writer.add(snapshot("b", 1)));
+}
+
+TEST_F(Store, RefusesAnotherMeshSchemaOrFieldList) {
+  write({{"a", 1}});
+
+  EXPECT_ERROR(InputError, "store of another mesh",
+               SnapshotWriter(path_, make_furnace_mesh({}, 3, 2, 4), schema_, fields_));
+  EXPECT_ERROR(InputError, "gas_temperature [K] as number 2, expected nothing",
+               SnapshotWriter(path_, mesh_, InputSchema({schema_[0]}), fields_));
+  EXPECT_ERROR(InputError, "found pressure [Pa] as number 1, expected solid_velocity_z [m/s]",
+               SnapshotWriter(path_, mesh_, schema_, {fields_[1], fields_[0]}));
+}
+
+TEST_F(Store, RefusesNumbersThatAreNotFinite) {
+  SnapshotWriter writer(path_, mesh_, schema_, fields_);
+  auto bad_field = snapshot("a", 1);
+  bad_field.fields(0, 7) = std::numeric_limits<float>::quiet_NaN();
+  auto bad_input = snapshot("b", 1);
+  bad_input.record.inputs.values[0] = std::numeric_limits<double>::infinity();
+
+  EXPECT_ERROR(InputError, "case 'a', field pressure", writer.add(bad_field));
+  EXPECT_ERROR(InputError, "case 'b'", writer.add(bad_input));
+}
+
+TEST_F(Store, OneWriterAtATime) {
+  const SnapshotWriter first(path_, mesh_, schema_, fields_);
+
+  EXPECT_ERROR(UsageError, "another process is at work here", SnapshotWriter(path_, mesh_, schema_, fields_));
+}
+
+TEST_F(Store, DigestFollowsInputsAndContent) {
+  write({{"a", 1}, {"b", 2}});
+  const auto store = SnapshotStore::open(path_);
+  const std::vector<std::size_t> a{0}, b{1}, both{0, 1};
+
+  EXPECT_NE(store.digest(a), store.digest(b));
+  EXPECT_NE(store.digest(a), store.digest(both));
+  EXPECT_EQ(store.digest(both), SnapshotStore::open(path_).digest(both));
+}
+
+TEST_F(Store, UnknownFieldsAreNamedWithTheNearest) {
+  write({{"a", 1}});
+  const auto store = SnapshotStore::open(path_);
+
+  EXPECT_ERROR(InputError, "did you mean 'pressure'?", store.read("presure", store.find("a")));
+  EXPECT_TRUE(store.find("x*").empty());
+}
+
+TEST_F(Store, TheSameCasesGiveTheSameBytes) {
+  write({{"a", 1}, {"b", 2}});
+  const auto first = base::sha256_file(path_);
+  std::filesystem::remove(path_);
+  write({{"a", 1}, {"b", 2}});
+
+  EXPECT_EQ(base::sha256_file(path_), first);
+}
+
+}  // namespace
+}  // namespace elrom::field
