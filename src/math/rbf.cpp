@@ -34,6 +34,34 @@ MatrixD tail_terms(const MatrixD& x, int degree) {
   return terms;
 }
 
+/// [Phi + smoothing I, P; P^T, 0]
+Eigen::MatrixXd system_of(const MatrixD& x, const RbfOptions& options) {
+  const MatrixD terms = tail_terms(x, tail_degree(options, x));
+  const Eigen::Index n = x.rows(), n_tail = terms.cols();
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + n_tail, n + n_tail);
+  Eigen::MatrixXd distances = squared_distances(x, x).cwiseSqrt();
+  distances.diagonal().setZero();
+  system.topLeftCorner(n, n) = distances.unaryExpr([&](double r) { return radial(options.function, r); });
+  system.topLeftCorner(n, n).diagonal().array() += options.smoothing;
+  system.topRightCorner(n, n_tail) = terms;
+  system.bottomLeftCorner(n_tail, n) = terms.transpose();
+  return system;
+}
+
+Eigen::MatrixXd padded(const Eigen::MatrixXd& y, const MatrixD& x, const RbfOptions& options) {
+  const Eigen::Index n_tail = tail_degree(options, x) == 0 ? 1 : 1 + x.cols();
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(y.rows() + n_tail, y.cols());
+  right.topRows(y.rows()) = y;
+  return right;
+}
+
+Eigen::MatrixXd solve(const Eigen::MatrixXd& system, const Eigen::MatrixXd& right) {
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(system);
+  if (lu.rcond() > 1e-14) return lu.solve(right);
+  // Repeated points, or constant inputs under a tail of degree 1: the solution of least norm.
+  return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(system).solve(right);
+}
+
 }  // namespace
 
 std::string_view name_of(RadialFunction function) {
@@ -66,27 +94,17 @@ double radial(RadialFunction function, double r) {
 RbfInterpolator::RbfInterpolator(MatrixD x, const Eigen::MatrixXd& y, const RbfOptions& options)
     : function_(options.function), x_(std::move(x)) {
   check(x_.rows() == y.rows(), "RBF: as many targets as points");
-  const MatrixD terms = tail_terms(x_, tail_degree(options, x_));
-  const Eigen::Index n = x_.rows(), n_tail = terms.cols();
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + n_tail, n + n_tail);
-  Eigen::MatrixXd distances = squared_distances(x_, x_).cwiseSqrt();
-  distances.diagonal().setZero();
-  system.topLeftCorner(n, n) = distances.unaryExpr([&](double r) { return radial(function_, r); });
-  system.topLeftCorner(n, n).diagonal().array() += options.smoothing;
-  system.topRightCorner(n, n_tail) = terms;
-  system.bottomLeftCorner(n_tail, n) = terms.transpose();
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n + n_tail, y.cols());
-  right.topRows(n) = y;
+  const Eigen::MatrixXd solution = solve(system_of(x_, options), padded(y, x_, options));
+  weights_ = solution.topRows(x_.rows());
+  tail_ = solution.bottomRows(solution.rows() - x_.rows());
+}
 
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(system);
-  Eigen::MatrixXd solution;
-  if (lu.rcond() > 1e-14) {
-    solution = lu.solve(right);
-  } else {  // repeated points, or constant inputs under a tail of degree 1
-    solution = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(system).solve(right);
-  }
-  weights_ = solution.topRows(n);
-  tail_ = solution.bottomRows(n_tail);
+Eigen::MatrixXd rbf_leave_one_out(const MatrixD& x, const Eigen::MatrixXd& y, const RbfOptions& options) {
+  const Eigen::MatrixXd system = system_of(x, options);
+  const Eigen::MatrixXd inverse = solve(system, Eigen::MatrixXd::Identity(system.rows(), system.cols()));
+  const Eigen::Index n = x.rows();
+  const Eigen::MatrixXd weights = inverse.topLeftCorner(n, n) * y;
+  return weights.array().colwise() / inverse.diagonal().head(n).array();
 }
 
 RbfInterpolator::RbfInterpolator(RadialFunction function, MatrixD x, MatrixD weights, MatrixD tail)

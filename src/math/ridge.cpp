@@ -18,14 +18,14 @@ struct Decomposition {
   VectorXd s;
 };
 
-/// Sum of squared residuals of fits that left one case out each: (y - H y)_i / (1 - H_ii), H = 1/n + U
-/// S^2/(S^2+a) U^T.
-double press(const Decomposition& d, const MatrixXd& y_centred, const MatrixXd& uty, double penalty) {
+/// Residuals of fits that left one case out each: (y - H y)_i / (1 - H_ii), H = 1/n + U S^2/(S^2+a) U^T.
+MatrixXd loo_residuals(const Decomposition& d, const MatrixXd& y_centred, const MatrixXd& uty,
+                       double penalty) {
   const VectorXd shrink = d.s.array().square() / (d.s.array().square() + penalty);
   const MatrixXd residual = y_centred - d.u * (shrink.asDiagonal() * uty);
   const VectorXd leverage =
       (d.u.array().square().matrix() * shrink).array() + 1.0 / static_cast<double>(y_centred.rows());
-  return (residual.array().colwise() / (1 - leverage.array()).cwiseMax(1e-12)).square().sum();
+  return residual.array().colwise() / (1 - leverage.array()).cwiseMax(1e-12);
 }
 
 }  // namespace
@@ -41,12 +41,13 @@ Ridge fit_ridge(const MatrixD& x, const MatrixXd& y, std::span<const double> pen
   const MatrixXd uty = d.u.transpose() * y_centred;
 
   Ridge ridge;
-  ridge.press = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity();
   for (double penalty : penalties) {
-    const double error = press(d, y_centred, uty, penalty);
-    if (error < ridge.press || ridge.penalty == 0) {
-      ridge.press = error;
+    const Eigen::RowVectorXd squares = loo_residuals(d, y_centred, uty, penalty).colwise().squaredNorm();
+    if (squares.sum() < least || ridge.penalty == 0) {
+      least = squares.sum();
       ridge.penalty = penalty;
+      ridge.loo_variance = squares.transpose() / static_cast<double>(x.rows());
     }
   }
   const VectorXd inverse = d.s.array() / (d.s.array().square() + ridge.penalty);

@@ -47,4 +47,9 @@ class RbfInterpolator {
   MatrixD x_, weights_, tail_;
 };
 
+/// Truth minus the prediction of an interpolator that did not see that point, closed form, (n, n_targets):
+/// w_i over the i-th diagonal entry of the system's inverse (Rippa 1999, with smoothing and tail).
+[[nodiscard]] Eigen::MatrixXd rbf_leave_one_out(const MatrixD& x, const Eigen::MatrixXd& y,
+                                                const RbfOptions& options);
+
 }  // namespace elrom::math

@@ -1,0 +1,69 @@
+#pragma once
+// Field models made of field models: a weighted sum, and the average over mirror images.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "elrom/field/symmetry.hpp"
+#include "elrom/model/field_model.hpp"
+
+namespace elrom::model {
+
+/// sum of weight_i * model_i; the spreads add up with the same weights (their errors are taken as fully
+/// correlated). Thread rule: const use from any number of threads, each with a Workspace of its own.
+class BlendModel final : public FieldModel {
+ public:
+  struct Part {
+    double weight = 0;
+    std::shared_ptr<const FieldModel> model;
+  };
+  /// @throws InputError without parts, or when their columns differ
+  explicit BlendModel(std::vector<Part> parts, const std::string& where = "memory");
+
+  [[nodiscard]] std::string kind() const override { return "blend"; }
+  [[nodiscard]] std::size_t n_columns() const override { return parts_.front().model->n_columns(); }
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  void predict(const Query& query, std::span<float> values, std::span<float> spread,
+               Workspace& workspace) const override;
+  void save(io::TensorFile& file, const std::string& prefix) const override;
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
+                                                        const std::string& prefix);
+
+ private:
+  std::vector<Part> parts_;
+};
+
+/// Mean over the symmetry group of g^-1(model(g(inputs))): exactly symmetric, and less noisy than the model
+/// alone. Mirrors keep every cell in its plane. Thread rule: as above.
+class MirrorModel final : public FieldModel {
+ public:
+  /// @param group all elements, as field::symmetry_group gives them
+  /// @throws InputError for an image that takes cells to another plane
+  MirrorModel(std::shared_ptr<const FieldModel> model, const std::vector<field::Mirror>& group,
+              field::Parity parity, std::size_t n_planes);
+
+  [[nodiscard]] std::string kind() const override { return "mirror"; }
+  [[nodiscard]] std::size_t n_columns() const override { return model_->n_columns(); }
+  void predict(const Query& query, std::span<float> values, std::span<float> spread,
+               Workspace& workspace) const override;
+  void save(io::TensorFile& file, const std::string& prefix) const override;
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
+                                                        const std::string& prefix);
+
+ private:
+  struct Image {
+    io::Tensor input_from;  //!< (n_inputs) i32: mirrored[i] = offset[i] + sign[i] * inputs[input_from[i]]
+    io::Tensor input_sign, offset;  //!< (n_inputs) f64
+    io::Tensor column_from;  //!< (n_planes, n_columns) i32, or (1, n_columns) when every plane has the same
+    float field_sign = 1;
+  };
+  MirrorModel() = default;
+  void add_image(const Image& image, const Query& query, std::span<float> values, std::span<float> spread,
+                 Workspace& workspace) const;
+
+  std::shared_ptr<const FieldModel> model_;
+  std::vector<Image> images_;
+};
+
+}  // namespace elrom::model

@@ -1,0 +1,56 @@
+#pragma once
+// field(cell) = mean(cell) + sum over modes of coefficient(inputs) * mode(cell): the form of every peer but
+// the nearest case, and of the kernel smoother. Only the coefficients' predictor differs.
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "elrom/model/coefficient_model.hpp"
+#include "elrom/model/field_model.hpp"
+
+namespace elrom::model {
+
+/// Thread rule: const use from any number of threads, each with a Workspace of its own.
+class PodModel final : public FieldModel {
+ public:
+  /// Tensors as they lie in a bundle: all modes of a plane side by side, so a plane is one piece of the file.
+  struct Parts {
+    std::string kind;     ///< as in study.toml: "linear", "pod_gp", ...
+    io::Tensor mean;      //!< SI, (n_planes, n_columns) f32
+    io::Tensor modes;     //!< (n_planes, n_modes, n_columns) f32
+    io::Tensor residual;  //!< SI, standard deviation of what the modes leave out, (n_planes, n_columns) f32;
+                          //!< may be empty
+    std::shared_ptr<const CoefficientModel> coefficients;
+  };
+  /// @throws InputError when shapes do not fit each other
+  explicit PodModel(Parts parts, const std::string& where = "memory");
+
+  [[nodiscard]] std::string kind() const override { return parts_.kind; }
+  [[nodiscard]] std::size_t n_columns() const override { return n_columns_; }
+  [[nodiscard]] std::size_t n_modes() const { return n_modes_; }
+  [[nodiscard]] const CoefficientModel& coefficients() const { return *parts_.coefficients; }
+
+  void predict(const Query& query, std::span<float> values, std::span<float> spread,
+               Workspace& workspace) const override;
+  void save(io::TensorFile& file, const std::string& prefix) const override;
+
+  /// Kinds that are stored in this form.
+  [[nodiscard]] static const std::vector<std::string>& kinds();
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
+                                                        const std::string& prefix);
+
+ private:
+  Parts parts_;
+  std::size_t n_planes_ = 0, n_columns_ = 0, n_modes_ = 0;
+};
+
+/// From matrices in cell order. @param mean (n_cells) @param modes (n_modes, n_cells)
+/// @param residual (n_cells), may be empty @param n_columns divides n_cells
+[[nodiscard]] std::unique_ptr<PodModel> make_pod_model(std::string kind, const Eigen::VectorXd& mean,
+                                                       const MatrixF& modes, const Eigen::VectorXd& residual,
+                                                       std::size_t n_columns,
+                                                       std::shared_ptr<const CoefficientModel> coefficients);
+
+}  // namespace elrom::model

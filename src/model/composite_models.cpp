@@ -1,0 +1,209 @@
+#include "elrom/model/composite_models.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "elrom/base/error.hpp"
+#include "model_parts.hpp"
+
+namespace elrom::model {
+
+namespace {
+
+constexpr std::size_t most_parts = 64;  // a file that asks for more is not one of ours
+
+std::size_t count_of(const nlohmann::json& description, const std::string& key, const std::string& where) {
+  const auto found = description.find(key);
+  if (found == description.end() || !found->is_number_unsigned() || found->get<std::uint64_t>() == 0 ||
+      found->get<std::uint64_t>() > most_parts) {
+    throw InputError({.what = "incomplete description of a model",
+                      .where = where,
+                      .expected = "\"" + key + "\" between 1 and " + std::to_string(most_parts)});
+  }
+  return found->get<std::size_t>();
+}
+
+}  // namespace
+
+BlendModel::BlendModel(std::vector<Part> parts, const std::string& where) : parts_(std::move(parts)) {
+  const bool fits = !parts_.empty() && std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+    return std::isfinite(part.weight) && part.model->n_columns() == parts_.front().model->n_columns();
+  });
+  if (!fits) {
+    throw InputError({.what = "blend of models that do not fit together",
+                      .where = where,
+                      .expected = "at least one model, finite weights, the same columns"});
+  }
+}
+
+void BlendModel::predict(const Query& query, std::span<float> values, std::span<float> spread,
+                         Workspace& workspace) const {
+  std::fill(values.begin(), values.end(), 0.0F);
+  std::fill(spread.begin(), spread.end(), 0.0F);
+  for (const Part& part : parts_) {
+    const Workspace::Frame frame(workspace);
+    const std::span<float> own = workspace.floats(values.size()),
+                           own_spread = workspace.floats(spread.size());
+    part.model->predict(query, own, own_spread, workspace);
+    const auto weight = static_cast<float>(part.weight);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * own[i];
+    for (std::size_t i = 0; i < spread.size(); ++i) spread[i] += std::abs(weight) * own_spread[i];
+  }
+}
+
+void BlendModel::save(io::TensorFile& file, const std::string& prefix) const {
+  file.set_text(prefix, nlohmann::json{{"kind", kind()}, {"parts", parts_.size()}}.dump());
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(parts_.size()));
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    weights[static_cast<Eigen::Index>(i)] = parts_[i].weight;
+    parts_[i].model->save(file, prefix + "/part" + std::to_string(i));
+  }
+  save_vector(file, prefix + "/weights", weights);
+}
+
+std::unique_ptr<FieldModel> BlendModel::load(const io::TensorFile& file, const std::string& prefix) {
+  const std::string where = file.where() + ":" + prefix;
+  const std::size_t n = count_of(read_description(file, prefix), "parts", where);
+  const Eigen::VectorXd weights = load_vector(file, prefix + "/weights", n);
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < n; ++i) {
+    parts.push_back({weights[static_cast<Eigen::Index>(i)],
+                     load_field_model(file, prefix + "/part" + std::to_string(i))});
+  }
+  return std::make_unique<BlendModel>(std::move(parts), where);
+}
+
+namespace {
+
+/// Where each column of a plane comes from; the same for all planes: one row.
+io::Tensor column_map(const field::Mirror& mirror, std::size_t n_planes, std::size_t n_columns) {
+  std::vector<std::int32_t> columns(n_planes * n_columns);
+  check(mirror.cell_from.size() == columns.size(), "mirror: number of cells");
+  bool same = true;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const auto from = static_cast<std::size_t>(mirror.cell_from[c]);
+    if (from / n_columns != c / n_columns) {
+      throw InputError(
+          {.what = "mirror '" + mirror.name + "' moves cells to another plane", .expected = "planes kept"});
+    }
+    columns[c] = static_cast<std::int32_t>(from % n_columns);
+    same = same && columns[c] == columns[c % n_columns];
+  }
+  if (same) columns.resize(n_columns);
+  return io::Tensor::copy(std::span<const std::int32_t>(columns), {columns.size() / n_columns, n_columns});
+}
+
+io::Tensor doubles_of(const std::vector<double>& values) {
+  return io::Tensor::copy(std::span<const double>(values), {values.size()});
+}
+
+void check_indices(const io::Tensor& indices, std::size_t below, const std::string& where) {
+  for (std::int32_t i : indices.i32()) {
+    if (i < 0 || static_cast<std::size_t>(i) >= below) {
+      throw InputError({.what = "index of a mirror image out of range",
+                        .where = where,
+                        .found = std::to_string(i),
+                        .expected = "0 to " + std::to_string(below) + " exclusive"});
+    }
+  }
+}
+
+}  // namespace
+
+MirrorModel::MirrorModel(std::shared_ptr<const FieldModel> model, const std::vector<field::Mirror>& group,
+                         field::Parity parity, std::size_t n_planes)
+    : model_(std::move(model)) {
+  check(!group.empty(), "mirror model: a group of at least the identity");
+  for (const field::Mirror& mirror : group) {
+    images_.push_back(
+        {io::Tensor::copy(std::span<const std::int32_t>(mirror.input_from), {mirror.input_from.size()}),
+         doubles_of(mirror.input_sign), doubles_of(mirror.input_offset),
+         column_map(mirror, n_planes, model_->n_columns()), static_cast<float>(mirror.field_sign(parity))});
+  }
+}
+
+void MirrorModel::add_image(const Image& image, const Query& query, std::span<float> values,
+                            std::span<float> spread, Workspace& workspace) const {
+  const Workspace::Frame frame(workspace);
+  const std::span<double> inputs = doubles(workspace, query.inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const auto from = static_cast<std::size_t>(image.input_from.i32()[i]);
+    inputs[i] = image.offset.f64()[i] + image.input_sign.f64()[i] * query.inputs[from];
+  }
+  const std::span<float> own = workspace.floats(values.size()), own_spread = workspace.floats(spread.size());
+  model_->predict({inputs, query.planes, query.best_build_only}, own, own_spread, workspace);
+
+  const std::size_t n = n_columns();
+  const bool one_map = image.column_from.shape()[0] == 1;
+  for (std::size_t p = 0; p < query.planes.size(); ++p) {
+    const std::size_t row = one_map ? 0 : static_cast<std::size_t>(query.planes[p]);
+    const std::int32_t* from = image.column_from.i32().data() + row * n;
+    for (std::size_t c = 0; c < n; ++c) {
+      const std::size_t at = p * n + static_cast<std::size_t>(from[c]);
+      values[p * n + c] += image.field_sign * own[at];
+      if (!spread.empty()) spread[p * n + c] += own_spread[at];
+    }
+  }
+}
+
+void MirrorModel::predict(const Query& query, std::span<float> values, std::span<float> spread,
+                          Workspace& workspace) const {
+  check(images_.front().input_from.size() == query.inputs.size(), "mirror model: number of inputs");
+  std::fill(values.begin(), values.end(), 0.0F);
+  std::fill(spread.begin(), spread.end(), 0.0F);
+  for (const Image& image : images_) add_image(image, query, values, spread, workspace);
+  const float share = 1.0F / static_cast<float>(images_.size());
+  for (float& v : values) v *= share;
+  for (float& s : spread) s *= share;
+}
+
+void MirrorModel::save(io::TensorFile& file, const std::string& prefix) const {
+  nlohmann::json signs = nlohmann::json::array();
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    const std::string image = prefix + "/image" + std::to_string(i);
+    signs.push_back(images_[i].field_sign);
+    file.set(image + "/input_from", images_[i].input_from);
+    file.set(image + "/input_sign", images_[i].input_sign);
+    file.set(image + "/input_offset", images_[i].offset);
+    file.set(image + "/column_from", images_[i].column_from);
+  }
+  file.set_text(prefix,
+                nlohmann::json{{"kind", kind()}, {"images", images_.size()}, {"field_signs", signs}}.dump());
+  model_->save(file, prefix + "/model");
+}
+
+std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const std::string& prefix) {
+  const std::string where = file.where() + ":" + prefix;
+  const nlohmann::json description = read_description(file, prefix);
+  const std::size_t n = count_of(description, "images", where);
+  const auto signs = description.find("field_signs");
+  if (signs == description.end() || !signs->is_array() || signs->size() != n ||
+      !std::all_of(signs->begin(), signs->end(), [](const auto& s) { return s.is_number(); })) {
+    throw InputError(
+        {.what = "incomplete description of a model", .where = where, .expected = "one field sign an image"});
+  }
+  std::unique_ptr<MirrorModel> mirror(new MirrorModel());
+  mirror->model_ = load_field_model(file, prefix + "/model");
+  std::size_t n_inputs = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::string image = prefix + "/image" + std::to_string(i);
+    const std::array<std::size_t, 1> inputs{n_inputs};
+    const std::array<std::size_t, 2> columns{0, mirror->n_columns()};
+    Image part{file.tensor(image + "/input_from", inputs), file.tensor(image + "/input_sign", inputs),
+               file.tensor(image + "/input_offset", inputs), file.tensor(image + "/column_from", columns),
+               (*signs)[i].get<float>()};
+    n_inputs = part.input_from.size();
+    if (part.input_sign.f64().size() != n_inputs || part.offset.f64().size() != n_inputs ||
+        part.column_from.size() == 0) {
+      throw InputError(
+          {.what = "parts of a mirror image do not fit together", .where = file.where() + ":" + image});
+    }
+    check_indices(part.input_from, n_inputs, image);
+    check_indices(part.column_from, mirror->n_columns(), image);
+    mirror->images_.push_back(std::move(part));
+  }
+  return mirror;
+}
+
+}  // namespace elrom::model
