@@ -1,0 +1,233 @@
+#include "unit_mistakes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "elrom/base/text.hpp"
+#include "elrom/base/units.hpp"
+#include "elrom/field/catalogue.hpp"
+#include "robust.hpp"
+
+namespace elrom::ingest {
+namespace {
+
+constexpr std::size_t fewest_cases = 8;  // to compare cases with each other
+// In units of the features' usual scatter (the 90th percentile of the others' residuals):
+constexpr double suspicious_residual = 2.0;  // no case of a healthy set lies so far out ...
+constexpr double healthy_residual = 1.7;     // ... and nearly all within this
+constexpr double wild_residual = 8.0;        // told even when no unit explains it
+constexpr double least_scatter = 0.02;       // 2 %, where cases agree almost exactly
+constexpr double least_gain = 3.0;           // by which a correction must lower the sum of squares
+constexpr double most_square = 30.0;         // a feature far out counts no more than this
+
+// --- corrections
+
+struct Slip {
+  double factor, offset;
+  std::string description;
+};
+
+/// Slips between any two units of a dimension, each numeric change once; those that involve `usual` come
+/// first, and give the description.
+std::vector<Slip> slips_of(const std::string& si, const std::string& usual) {
+  std::vector<Slip> slips;
+  const auto add = [&](const std::string& meant, const std::string& taken) {
+    const auto& a = base::unit(meant);
+    const auto& b = base::unit(taken);
+    // stored = b.to_si(x), and a.to_si(x) is right.
+    const double factor = a.factor / b.factor, offset = a.offset - factor * b.offset;
+    const bool nothing = std::abs(std::log(factor)) < 1e-9 && std::abs(offset) < 1e-9;
+    const bool known = std::any_of(slips.begin(), slips.end(), [&](const Slip& s) {
+      return std::abs(std::log(s.factor / factor)) < 1e-9 && std::abs(s.offset - offset) < 1e-6;
+    });
+    if (!nothing && !known) slips.push_back({factor, offset, "values in " + meant + " taken for " + taken});
+  };
+  const auto units = base::units_of(si);
+  for (const auto& other : units) {
+    add(other, usual);
+    add(usual, other);
+  }
+  for (const auto& a : units) {
+    for (const auto& b : units) add(a, b);
+  }
+  return slips;
+}
+
+void add_group(std::vector<Correction>& corrections, const std::string& name, const std::string& si,
+               const std::string& usual, const std::vector<std::size_t>& inputs,
+               const std::vector<std::string>& fields) {
+  if (inputs.size() + fields.size() == 0) return;
+  for (const auto& slip : slips_of(si, usual)) {
+    corrections.push_back({name, slip.description, slip.factor, slip.offset, inputs, fields});
+  }
+}
+
+std::vector<std::string> fields_like(std::span<const std::string> fields, std::string_view pattern) {
+  std::vector<std::string> found;
+  for (const auto& name : fields) {
+    if (base::matches(name, pattern)) found.push_back(name);
+  }
+  return found;
+}
+
+// --- comparison
+
+/// The usual dependence of every feature on the load, learned from all cases.
+class Usual {
+ public:
+  Usual(const CaseFeatures& features, std::span<const CaseSummary> cases)
+      : features_(features), rows_(evaluate_all(features, cases)), load_(features, rows_) {
+    std::vector<double> loads;
+    for (const auto& row : rows_) loads.push_back(load_.of(row));
+    for (std::size_t k = 0; k < features.infos().size(); ++k) {
+      std::vector<double> column;
+      for (const auto& row : rows_) column.push_back(row[k]);
+      lines_.push_back(robust_line(loads, column, fewest_cases));
+      lines_.back().scatter = std::max(lines_.back().scatter, least_scatter);
+    }
+  }
+
+  /// Residuals in units of the usual scatter; 0 where nothing is known.
+  [[nodiscard]] std::vector<double> residuals(const CaseSummary& one, const Correction* correction) const {
+    const auto row = features_.evaluate(one, correction);
+    const double load = load_.of(row);
+    std::vector<double> result(row.size(), 0.0);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const auto& line = lines_[k];
+      if (line.known && std::isfinite(row[k])) result[k] = (row[k] - line.at(load)) / line.scatter;
+    }
+    return result;
+  }
+
+ private:
+  static std::vector<std::vector<double>> evaluate_all(const CaseFeatures& features,
+                                                       std::span<const CaseSummary> cases) {
+    std::vector<std::vector<double>> rows;
+    for (const auto& one : cases) rows.push_back(features.evaluate(one));
+    return rows;
+  }
+
+  const CaseFeatures& features_;
+  std::vector<std::vector<double>> rows_;
+  LoadProxy load_;
+  std::vector<RobustLine> lines_;
+};
+
+double sum_of_squares(const std::vector<double>& residuals) {
+  double sum = 0;
+  for (const double r : residuals) sum += std::min(r * r, most_square);
+  return sum;
+}
+
+std::size_t farthest(const std::vector<double>& residuals) {
+  const auto at = std::max_element(residuals.begin(), residuals.end(),
+                                   [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return static_cast<std::size_t>(at - residuals.begin());
+}
+
+/// The correction that brings the case best back among the others, if one does.
+const Correction* best_correction(const Usual& usual, const CaseFeatures& features, const CaseSummary& one,
+                                  const std::vector<Correction>& corrections,
+                                  const std::vector<double>& residuals) {
+  const double before = sum_of_squares(residuals);
+  const Correction* best = nullptr;
+  double best_sum = before - least_gain;
+  for (const auto& correction : corrections) {
+    const auto touched = features.touched(correction);
+    const bool suspected = std::any_of(touched.begin(), touched.end(), [&](std::size_t k) {
+      return std::abs(residuals[k]) > suspicious_residual;
+    });
+    if (!suspected) continue;
+    const auto after = usual.residuals(one, &correction);
+    const bool healthy = std::all_of(touched.begin(), touched.end(),
+                                     [&](std::size_t k) { return std::abs(after[k]) < healthy_residual; });
+    const double sum = sum_of_squares(after);
+    if (healthy && sum < best_sum) {
+      best = &correction;
+      best_sum = sum;
+    }
+  }
+  return best;
+}
+
+std::vector<UnitMistake> compare_with_others(std::span<const CaseSummary> cases, const CaseFeatures& features,
+                                             const std::vector<Correction>& corrections) {
+  std::vector<UnitMistake> mistakes;
+  const Usual usual(features, cases);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto residuals = usual.residuals(cases[i], nullptr);
+    const auto worst = farthest(residuals);
+    if (std::abs(residuals[worst]) <= suspicious_residual) continue;
+    if (const auto* cause = best_correction(usual, features, cases[i], corrections, residuals)) {
+      mistakes.push_back({i, cause->quantity, cause->description, true});
+    } else if (std::abs(residuals[worst]) > wild_residual) {
+      mistakes.push_back({i, features.infos()[worst].name,
+                          "far from the other cases at this load (" +
+                              base::rounded(std::abs(residuals[worst]), 2) + " times their usual scatter)",
+                          false});
+    }
+  }
+  return mistakes;
+}
+
+/// The first ratio of a case that physics does not allow.
+std::optional<UnitMistake> against_physics(const CaseSummary& one, std::size_t i_case,
+                                           const CaseFeatures& features) {
+  const auto values = features.evaluate(one);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const auto& info = features.infos()[k];
+    if (!info.range || !std::isfinite(values[k])) continue;
+    if (values[k] >= info.range->first && values[k] <= info.range->second) continue;
+    return UnitMistake{i_case, info.name,
+                       "impossible: " + base::rounded(std::exp(values[k]), 3) + ", plausible " +
+                           base::rounded(std::exp(info.range->first), 3) + " to " +
+                           base::rounded(std::exp(info.range->second), 3),
+                       false};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Correction> possible_corrections(const field::InputSchema& schema,
+                                             std::span<const std::string> fields) {
+  std::vector<Correction> corrections;
+  std::vector<std::size_t> flows;
+  std::string flow_unit = "kg/s";
+  for (std::size_t i = 0; i < schema.size(); ++i) {
+    add_group(corrections, schema[i].name, schema[i].unit, schema[i].display_unit, {i}, {});
+    if (schema[i].unit == "kg/s") {
+      flows.push_back(i);
+      flow_unit = schema[i].display_unit;
+    }
+  }
+  for (const auto& name : fields) {
+    const auto unit = field::field_info(name).unit;
+    add_group(corrections, name, unit, unit, {}, {name});
+  }
+  add_group(corrections, "all gas flows", "kg/s", flow_unit, flows, {});
+  add_group(corrections, "all gas velocities", "m/s", "m/s", {}, fields_like(fields, "gas_velocity_?"));
+  add_group(corrections, "all solid velocities", "m/s", "m/s", {}, fields_like(fields, "solid_velocity_?"));
+  add_group(corrections, "all velocities", "m/s", "m/s", {}, fields_like(fields, "*_velocity_?"));
+  return corrections;
+}
+
+std::vector<UnitMistake> find_unit_mistakes(std::span<const CaseSummary> cases) {
+  if (cases.empty()) return {};
+  const CaseFeatures features(cases[0].schema);
+  std::vector<UnitMistake> mistakes;
+  if (cases.size() >= fewest_cases) {
+    mistakes = compare_with_others(cases, features, possible_corrections(cases[0].schema, cases[0].fields));
+  }
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const bool told =
+        std::any_of(mistakes.begin(), mistakes.end(), [&](const UnitMistake& m) { return m.i_case == i; });
+    if (told) continue;
+    if (auto mistake = against_physics(cases[i], i, features)) mistakes.push_back(std::move(*mistake));
+  }
+  return mistakes;
+}
+
+}  // namespace elrom::ingest
