@@ -1,0 +1,119 @@
+// The hand-written gradient and Adam step against LibTorch's autograd and optimisers.
+
+#include "../../train/torch/training.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/random_network.hpp"
+
+namespace elrom::torch {
+namespace {
+
+using test::random_matrix;
+using ::torch::Tensor;
+
+study::TrainingProblem make_problem(bool weighted) {
+  study::TrainingProblem problem;
+  problem.train_inputs = random_matrix(40, 6, base::Seed(1));
+  problem.train_targets = random_matrix(40, 5, base::Seed(2));
+  problem.validation_inputs = random_matrix(10, 6, base::Seed(3));
+  problem.validation_targets = random_matrix(10, 5, base::Seed(4));
+  if (!weighted) return problem;
+  problem.train_weights = (random_matrix(40, 5, base::Seed(5)).array() > 0).cast<float>();
+  problem.validation_weights = (random_matrix(10, 5, base::Seed(6)).array() > 0).cast<float>();
+  return problem;
+}
+
+Tensor to_torch(const MatrixF& matrix) {
+  return ::torch::from_blob(const_cast<float*>(matrix.data()), {matrix.rows(), matrix.cols()}).clone();
+}
+
+// Loss of the flat parameters as LibTorch's own operators give it.
+Tensor autograd_loss(const Tensor& flat, const std::vector<std::int64_t>& widths,
+                     model::Activation activation, const study::TrainingProblem& problem) {
+  Tensor x = to_torch(problem.train_inputs);
+  std::int64_t at = 0;
+  for (std::size_t i = 1; i < widths.size(); ++i) {
+    const auto n = widths[i] * widths[i - 1];
+    x = ::torch::linear(x, flat.slice(0, at, at + n).view({widths[i], widths[i - 1]}),
+                        flat.slice(0, at + n, at + n + widths[i]));
+    at += n + widths[i];
+    if (i + 1 == widths.size()) break;
+    x = activation == model::Activation::relu   ? ::torch::relu(x)
+        : activation == model::Activation::tanh ? ::torch::tanh(x)
+                                                : ::torch::silu(x);
+  }
+  const Tensor squares = (x - to_torch(problem.train_targets)).square();
+  if (problem.train_weights.size() == 0) return squares.mean();
+  const Tensor weights = to_torch(problem.train_weights);
+  return (squares * weights).sum() / weights.sum();
+}
+
+struct Case {
+  model::Activation activation;
+  bool weighted;
+};
+class Step : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Step, EqualsAutogradAndLibTorchsAdamW) {
+  const auto problem = make_problem(GetParam().weighted);
+  const study::Hyperparameters hyperparameters{.learning_rate = 1e-2,
+                                               .n_layers = 2,
+                                               .n_units = 7,
+                                               .batch_size = 40,
+                                               .weight_decay = 0.1,
+                                               .activation = GetParam().activation};
+  Training training(problem, hyperparameters, base::Seed(9), ::torch::kCPU);
+  Tensor parameters = training.mlp().parameters().clone().set_requires_grad(true);
+  ::torch::optim::AdamW adam({parameters}, ::torch::optim::AdamWOptions(1e-2).weight_decay(0.1));
+  std::vector<std::int64_t> rows(40);
+  std::iota(rows.begin(), rows.end(), 0);
+
+  for (int i = 0; i < 5; ++i) {
+    adam.zero_grad();
+    autograd_loss(parameters, training.mlp().widths(), GetParam().activation, problem).backward();
+    training.step(rows);
+    const Tensor gradient = training.mlp().gradient();
+    EXPECT_LT((gradient - parameters.grad()).norm().item<double>(),
+              1e-5 * parameters.grad().norm().item<double>());
+    adam.step();
+  }
+
+  const Tensor difference = training.mlp().parameters() - parameters.detach();
+  EXPECT_LT(difference.norm().item<double>(), 1e-5 * parameters.norm().item<double>());
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Step,
+                         ::testing::Values(Case{model::Activation::relu, false},
+                                           Case{model::Activation::relu, true},
+                                           Case{model::Activation::tanh, false},
+                                           Case{model::Activation::silu, true}));
+
+TEST(Training, DropoutKeepsTheExpectedValue) {
+  Mlp mlp({4, 1000, 2}, model::Activation::relu, ::torch::kCPU);
+  Pass pass = mlp.make_pass(20, false, true, true);
+  base::Random random(base::Seed(1));
+
+  Mlp::draw_dropout(pass, 0.25, random);
+
+  EXPECT_NEAR(pass.kept[0].mean().item<double>(), 1, 0.02);  // 20,000 draws: standard error 0.004
+  EXPECT_NEAR((pass.kept[0] == 0).to(::torch::kFloat32).mean().item<double>(), 0.25, 0.02);
+}
+
+TEST(Training, EvaluationIsTheMeanOverTargetsThatCount) {
+  const auto problem = make_problem(true);
+  Training training(problem, {.n_layers = 0}, base::Seed(9), ::torch::kCPU);
+
+  const double mse = training.evaluate();
+
+  const Tensor flat = training.mlp().parameters();
+  auto swapped = problem;
+  swapped.train_inputs = problem.validation_inputs;
+  swapped.train_targets = problem.validation_targets;
+  swapped.train_weights = problem.validation_weights;
+  const double expected = autograd_loss(flat, {6, 5}, model::Activation::relu, swapped).item<double>();
+  EXPECT_NEAR(mse, expected, 1e-6 * expected);
+}
+
+}  // namespace
+}  // namespace elrom::torch
