@@ -22,8 +22,13 @@ find_library(ELROM_HDF5_ARCHIVE NAMES libhdf5_serial.a HINTS ${HDF5_SERIAL_LIBRA
 find_library(ELROM_SZ_ARCHIVE NAMES libsz.a)
 find_library(ELROM_AEC_ARCHIVE NAMES libaec.a)
 if(ELROM_HDF5_ARCHIVE AND ELROM_SZ_ARCHIVE AND ELROM_AEC_ARCHIVE)
-  set_target_properties(PkgConfig::HDF5_SERIAL PROPERTIES INTERFACE_LINK_LIBRARIES
-    "${ELROM_HDF5_ARCHIVE};${ELROM_SZ_ARCHIVE};${ELROM_AEC_ARCHIVE};ZLIB::ZLIB;OpenSSL::Crypto;${CMAKE_DL_LIBS};m")
+  # A target rather than a bare path, so that CMake puts what the archive needs behind it on every link line.
+  if(NOT TARGET elrom_hdf5_archive)
+    add_library(elrom_hdf5_archive STATIC IMPORTED GLOBAL)
+  endif()
+  set_target_properties(elrom_hdf5_archive PROPERTIES IMPORTED_LOCATION ${ELROM_HDF5_ARCHIVE} INTERFACE_LINK_LIBRARIES
+    "${ELROM_SZ_ARCHIVE};${ELROM_AEC_ARCHIVE};ZLIB::ZLIB;OpenSSL::Crypto;${CMAKE_DL_LIBS};m")
+  set_target_properties(PkgConfig::HDF5_SERIAL PROPERTIES INTERFACE_LINK_LIBRARIES elrom_hdf5_archive)
 endif()
 
 if(NOT elrom_FIND_COMPONENTS OR "study" IN_LIST _elrom_wanted)
