@@ -1,0 +1,122 @@
+#pragma once
+// Accuracy of a study on the cases it never saw, beside every peer on the same cases.
+//
+// Held-out cases whose names begin with `rep` are repeated runs of the same boundary conditions: they give the noise of the
+// truth and are not scored. Statistics of the training set are those of all cases that are not held out.
+//
+// Thread rule: evaluate() uses the threads it is given; the results are plain values.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "elrom/base/log.hpp"
+#include "elrom/field/catalogue.hpp"
+#include "elrom/model/audit.hpp"
+#include "elrom/model/guard.hpp"
+#include "elrom/report/figures.hpp"
+#include "elrom/report/metrics.hpp"
+#include "elrom/report/study_files.hpp"
+
+namespace elrom::report {
+
+/// Levels at which promised and measured coverage are compared.
+inline constexpr std::array<double, 4> coverage_levels{0.5, 0.8, 0.9, 0.95};
+
+struct AccuracyOptions {
+  std::filesystem::path study;
+  std::optional<std::filesystem::path> store;   ///< instead of the study's
+  std::vector<std::filesystem::path> against;   ///< further bundles or studies to show beside the peers
+  int n_threads = 1;
+  bool figures = false;                         ///< slices, profiles and histograms too, for the page
+};
+
+/// A case that is scored.
+struct ScoredCase {
+  std::string name;
+  double load = 0;
+  model::Assessment validity;
+  model::Audit truth_audit, prediction_audit;
+};
+
+struct WorstPlace {
+  WorstCell cell;
+  std::array<double, 3> position{};  ///< [m]
+};
+
+/// One method on one field.
+struct MethodField {
+  bool available = false;            ///< the bundle has this field
+  std::string kind;                  ///< what answers for the field: "kernel", "pod_gp", "networks" ...
+  ErrorSums pooled;
+  std::vector<ErrorSums> cases;      //!< (n_cases)
+  std::vector<WorstPlace> worst;     //!< (n_cases)
+};
+
+/// One band of a networks model.
+struct SubmodelScore {
+  std::string name;
+  std::size_t n_cells = 0;
+  ErrorSums sums;
+};
+
+struct FieldAccuracy {
+  field::FieldInfo info;
+  std::vector<MethodField> methods;        //!< in the order of AccuracyReport::methods
+  std::vector<SubmodelScore> submodels;    //!< of the study's own networks, wherever they are; empty: none
+  std::optional<double> noise;             ///< energy of the noise in one run; none without repeated runs
+  std::optional<double> noise_nrmse;       ///< its square root over the departure of the scored cases: the noise floor
+  ErrorBudget budget;                      ///< of the study's model
+  std::vector<double> compression_nrmse;   //!< of the best fit with r modes of the training cases, (n_modes + 1)
+  std::vector<std::vector<double>> coverage;  //!< measured share, (levels, n_cases); empty: no promise made
+  [[nodiscard]] double nrmse(std::size_t method) const;
+  /// With the noise of the truth taken off; NaN without repeated runs.
+  [[nodiscard]] double nrmse_without_noise(std::size_t method, std::size_t n_cases) const;
+};
+
+struct MethodSummary {
+  BundleFile file;
+  std::string digest;
+  double open_ms = 0, predict_ms = 0;  ///< all fields of one case, inside this process
+  double mean_nrmse = 0;               ///< over the fields; NaN when one is missing
+  double mean_nrmse_without_noise = 0;
+};
+
+struct AccuracyReport {
+  StudyFiles study;
+  std::string created;                    ///< UTC
+  std::size_t n_training = 0, n_planes = 0, n_columns = 0;
+  std::vector<ScoredCase> cases;
+  std::vector<MethodSummary> methods;     ///< the study's model first
+  std::vector<FieldAccuracy> fields;
+  std::vector<std::string> repeats;       ///< runs that gave the noise
+  std::optional<Figures> figures;
+
+  /// Index of the simple peer with the lowest mean NRMSE; none without peers.
+  [[nodiscard]] std::optional<std::size_t> best_peer() const;
+  /// Index of the best simple peer in one field.
+  [[nodiscard]] std::optional<std::size_t> best_peer(const FieldAccuracy& field) const;
+  /// 1 - model / best single peer, of the mean over fields; NaN without peers.
+  [[nodiscard]] double gain() const;
+  [[nodiscard]] double gain_without_noise() const;
+  /// Fields where the model's NRMSE is at or below that of every simple peer.
+  [[nodiscard]] std::size_t fields_won() const;
+  /// Measured coverage over all fields and cases at a level's index; NaN when no field makes a promise.
+  [[nodiscard]] double mean_coverage(std::size_t i_level) const;
+};
+
+/// @throws InputError, Interrupted
+[[nodiscard]] AccuracyReport evaluate(const AccuracyOptions& options, Log& log, const std::stop_token& stop = {});
+
+/// One sentence: what was reached, and where a peer is better.
+[[nodiscard]] std::string headline(const AccuracyReport& report);
+/// Fields against methods for a terminal; `colour` uses ANSI sequences.
+[[nodiscard]] std::string terminal_table(const AccuracyReport& report, bool colour);
+/// Layouts in data/FORMATS.md (kind "elrom-accuracy").
+[[nodiscard]] std::string to_json(const AccuracyReport& report);
+[[nodiscard]] std::string to_csv(const AccuracyReport& report);
+
+}  // namespace elrom::report
