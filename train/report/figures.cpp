@@ -18,13 +18,15 @@ Grid grid_of(const field::Mesh& mesh) {
   const double depth = mesh.centre.col(1).maxCoeff() - mesh.centre.col(1).minCoeff();
   const double same_row = 1e-6 * depth;
   std::size_t n_x = 1;
-  while (n_x < mesh.n_columns && std::abs(mesh.centre(static_cast<Eigen::Index>(n_x), 1) - mesh.centre(0, 1)) <= same_row)
+  while (n_x < mesh.n_columns &&
+         std::abs(mesh.centre(static_cast<Eigen::Index>(n_x), 1) - mesh.centre(0, 1)) <= same_row)
     ++n_x;
   if (mesh.n_columns % n_x != 0) return {mesh.n_columns, 1};
   return {n_x, mesh.n_columns / n_x};
 }
 
-// Corners of hexahedron `cell` projected on (axis, z): the mean of the two corners that lie behind one another.
+// Corners of hexahedron `cell` projected on (axis, z): the mean of the two corners that lie behind one
+// another.
 std::array<float, 8> quad_from_points(const field::Mesh& mesh, std::size_t cell, int axis) {
   // VTK order: 0 1 2 3 around the lower face, 4 5 6 7 above them; 0-1 runs along x, 0-3 along y.
   constexpr std::array<std::array<int, 2>, 4> along_x{{{0, 3}, {1, 2}, {5, 6}, {4, 7}}};
@@ -40,7 +42,8 @@ std::array<float, 8> quad_from_points(const field::Mesh& mesh, std::size_t cell,
 }
 
 // Without corner points: a rectangle that reaches halfway to the neighbours.
-std::array<float, 8> quad_from_centre(const field::Mesh& mesh, std::size_t cell, int axis, double width, double height) {
+std::array<float, 8> quad_from_centre(const field::Mesh& mesh, std::size_t cell, int axis, double width,
+                                      double height) {
   const auto u = static_cast<float>(mesh.centre(static_cast<Eigen::Index>(cell), axis));
   const auto v = static_cast<float>(mesh.centre(static_cast<Eigen::Index>(cell), 2));
   const auto du = static_cast<float>(width / 2), dv = static_cast<float>(height / 2);
@@ -72,7 +75,8 @@ Cut middle_cut(const field::Mesh& mesh, const Grid& grid, int axis) {
       cut.corners.push_back(has_points ? quad_from_points(mesh, first, axis)
                                        : quad_from_centre(mesh, first, axis, width, height));
     }
-  cut.title = fmt::format("{} = {:.2f} m", axis == 0 ? "y" : "x", place / static_cast<double>(cut.cells.size()));
+  cut.title =
+      fmt::format("{} = {:.2f} m", axis == 0 ? "y" : "x", place / static_cast<double>(cut.cells.size()));
   return cut;
 }
 
@@ -115,10 +119,15 @@ std::vector<double> plane_means(const field::Mesh& mesh, std::span<const float> 
 Histogram::Histogram(double low_edge, double high_edge, std::size_t n_bins)
     : low(low_edge), high(high_edge > low_edge ? high_edge : low_edge + 1), counts(n_bins, 0) {}
 void Histogram::add(double value) { ++counts[bin_of(value, low, high, counts.size())]; }
-std::uint64_t Histogram::total() const { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+std::uint64_t Histogram::total() const {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
 
 ParityMap::ParityMap(double low_edge, double high_edge, std::size_t bins)
-    : low(low_edge), high(high_edge > low_edge ? high_edge : low_edge + 1), n_bins(bins), counts(bins * bins, 0) {}
+    : low(low_edge),
+      high(high_edge > low_edge ? high_edge : low_edge + 1),
+      n_bins(bins),
+      counts(bins * bins, 0) {}
 void ParityMap::add(double truth, double prediction) {
   ++counts[bin_of(truth, low, high, n_bins) * n_bins + bin_of(prediction, low, high, n_bins)];
 }

@@ -1,8 +1,9 @@
 #pragma once
 // Accuracy of a study on the cases it never saw, beside every peer on the same cases.
 //
-// Held-out cases whose names begin with `rep` are repeated runs of the same boundary conditions: they give the noise of the
-// truth and are not scored. Statistics of the training set are those of all cases that are not held out.
+// Held-out cases whose names begin with `rep` are repeated runs of the same boundary conditions: they give
+// the noise of the truth and are not scored. Statistics of the training set are those of all cases that are
+// not held out.
 //
 // Thread rule: evaluate() uses the threads it is given; the results are plain values.
 
@@ -28,10 +29,10 @@ inline constexpr std::array<double, 4> coverage_levels{0.5, 0.8, 0.9, 0.95};
 
 struct AccuracyOptions {
   std::filesystem::path study;
-  std::optional<std::filesystem::path> store;   ///< instead of the study's
-  std::vector<std::filesystem::path> against;   ///< further bundles or studies to show beside the peers
+  std::optional<std::filesystem::path> store;  ///< instead of the study's
+  std::vector<std::filesystem::path> against;  ///< further bundles or studies to show beside the peers
   int n_threads = 1;
-  bool figures = false;                         ///< slices, profiles and histograms too, for the page
+  bool figures = false;  ///< slices, profiles and histograms too, for the page
 };
 
 /// A case that is scored.
@@ -49,11 +50,11 @@ struct WorstPlace {
 
 /// One method on one field.
 struct MethodField {
-  bool available = false;            ///< the bundle has this field
-  std::string kind;                  ///< what answers for the field: "kernel", "pod_gp", "networks" ...
+  bool available = false;  ///< the bundle has this field
+  std::string kind;        ///< what answers for the field: "kernel", "pod_gp", "networks" ...
   ErrorSums pooled;
-  std::vector<ErrorSums> cases;      //!< (n_cases)
-  std::vector<WorstPlace> worst;     //!< (n_cases)
+  std::vector<ErrorSums> cases;   //!< (n_cases)
+  std::vector<WorstPlace> worst;  //!< (n_cases)
 };
 
 /// One band of a networks model.
@@ -65,12 +66,14 @@ struct SubmodelScore {
 
 struct FieldAccuracy {
   field::FieldInfo info;
-  std::vector<MethodField> methods;        //!< in the order of AccuracyReport::methods
-  std::vector<SubmodelScore> submodels;    //!< of the study's own networks, wherever they are; empty: none
-  std::optional<double> noise;             ///< energy of the noise in one run; none without repeated runs
-  std::optional<double> noise_nrmse;       ///< its square root over the departure of the scored cases: the noise floor
-  ErrorBudget budget;                      ///< of the study's model
-  std::vector<double> compression_nrmse;   //!< of the best fit with r modes of the training cases, (n_modes + 1)
+  std::vector<MethodField> methods;      //!< in the order of AccuracyReport::methods
+  std::vector<SubmodelScore> submodels;  //!< of the study's own networks, wherever they are; empty: none
+  std::optional<double> noise;           ///< energy of the noise in one run; none without repeated runs
+  std::optional<double>
+      noise_nrmse;     ///< its square root over the departure of the scored cases: the noise floor
+  ErrorBudget budget;  ///< of the study's model
+  std::vector<double>
+      compression_nrmse;  //!< of the best fit with r modes of the training cases, (n_modes + 1)
   std::vector<std::vector<double>> coverage;  //!< measured share, (levels, n_cases); empty: no promise made
   [[nodiscard]] double nrmse(std::size_t method) const;
   /// With the noise of the truth taken off; NaN without repeated runs.
@@ -87,12 +90,12 @@ struct MethodSummary {
 
 struct AccuracyReport {
   StudyFiles study;
-  std::string created;                    ///< UTC
+  std::string created;  ///< UTC
   std::size_t n_training = 0, n_planes = 0, n_columns = 0;
   std::vector<ScoredCase> cases;
-  std::vector<MethodSummary> methods;     ///< the study's model first
+  std::vector<MethodSummary> methods;  ///< the study's model first
   std::vector<FieldAccuracy> fields;
-  std::vector<std::string> repeats;       ///< runs that gave the noise
+  std::vector<std::string> repeats;  ///< runs that gave the noise
   std::optional<Figures> figures;
 
   /// Index of the simple peer with the lowest mean NRMSE; none without peers.
@@ -109,7 +112,8 @@ struct AccuracyReport {
 };
 
 /// @throws InputError, Interrupted
-[[nodiscard]] AccuracyReport evaluate(const AccuracyOptions& options, Log& log, const std::stop_token& stop = {});
+[[nodiscard]] AccuracyReport evaluate(const AccuracyOptions& options, Log& log,
+                                      const std::stop_token& stop = {});
 
 /// One sentence: what was reached, and where a peer is better.
 [[nodiscard]] std::string headline(const AccuracyReport& report);

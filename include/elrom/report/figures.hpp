@@ -1,5 +1,6 @@
 #pragma once
-// What the page draws of the fields: vertical cuts through the furnace, axial profiles and histograms of errors.
+// What the page draws of the fields: vertical cuts through the furnace, axial profiles and histograms of
+// errors.
 
 #include <array>
 #include <cstdint>
@@ -15,8 +16,10 @@ namespace elrom::report {
 struct Cut {
   std::string title;       ///< "y = 13.80 m"
   std::string horizontal;  ///< "x [m]"
-  std::vector<std::array<std::size_t, 2>> cells;  //!< a cut between two rows of cells shows their mean; else both equal
-  std::vector<std::array<float, 8>> corners;      //!< [m], counter-clockwise from lower left, same length as cells
+  std::vector<std::array<std::size_t, 2>>
+      cells;  //!< a cut between two rows of cells shows their mean; else both equal
+  std::vector<std::array<float, 8>>
+      corners;  //!< [m], counter-clockwise from lower left, same length as cells
 };
 
 /// Middle cuts along x and along y; a mesh of one row has one cut.
@@ -49,18 +52,19 @@ struct ParityMap {
 
 /// One field's drawings.
 struct FieldFigures {
-  std::vector<std::vector<std::vector<float>>> cuts;       //!< [case][series]: truth, then methods; empty: not kept
+  std::vector<std::vector<std::vector<float>>>
+      cuts;  //!< [case][series]: truth, then methods; empty: not kept
   std::vector<std::vector<std::vector<double>>> profiles;  //!< [case][series][plane]
-  std::vector<std::vector<double>> half_width;             //!< [case][plane]: mean 90 % half-width; empty: none
-  std::vector<Histogram> errors;                           //!< by method, over all scored cases
-  ParityMap parity;                                        ///< of the study's model
+  std::vector<std::vector<double>> half_width;  //!< [case][plane]: mean 90 % half-width; empty: none
+  std::vector<Histogram> errors;                //!< by method, over all scored cases
+  ParityMap parity;                             ///< of the study's model
 };
 
 struct Figures {
   std::vector<Cut> cuts;
-  std::vector<double> heights;             //!< [m], (n_planes)
+  std::vector<double> heights;  //!< [m], (n_planes)
   std::vector<FieldFigures> fields;
-  std::vector<std::size_t> cut_methods;    ///< methods whose cuts are kept: series 1 ... of FieldFigures::cuts
+  std::vector<std::size_t> cut_methods;  ///< methods whose cuts are kept: series 1 ... of FieldFigures::cuts
 };
 
 }  // namespace elrom::report

@@ -1,5 +1,6 @@
 #pragma once
-// What a trained study directory holds for a report: its store, its split, its bundles and what they took to train.
+// What a trained study directory holds for a report: its store, its split, its bundles and what they took to
+// train.
 
 #include <filesystem>
 #include <map>
@@ -19,11 +20,11 @@ struct BundleFile {
 
 struct StudyFiles {
   std::filesystem::path directory, store;
-  std::string name;                            ///< of the directory
-  std::vector<std::string> building;           ///< cases that may be learnt from, in split.json's order
-  std::vector<std::string> held_out;           ///< all of them
-  std::vector<BundleFile> bundles;             ///< the study's model first, then peers in their usual order
-  std::map<std::string, double> stage_seconds; ///< timing.json, by stage
+  std::string name;                             ///< of the directory
+  std::vector<std::string> building;            ///< cases that may be learnt from, in split.json's order
+  std::vector<std::string> held_out;            ///< all of them
+  std::vector<BundleFile> bundles;              ///< the study's model first, then peers in their usual order
+  std::map<std::string, double> stage_seconds;  ///< timing.json, by stage
 };
 
 /// @param store instead of the one the settings name
@@ -34,7 +35,8 @@ struct StudyFiles {
 /// Bundles of `path`: a bundle file, or a study directory's model.
 [[nodiscard]] BundleFile open_other(const std::filesystem::path& path);
 
-/// The methods that count as simple peers: nearest, linear, POD with a Gaussian process or radial basis functions.
+/// The methods that count as simple peers: nearest, linear, POD with a Gaussian process or radial basis
+/// functions.
 [[nodiscard]] bool is_simple_peer(const std::string& method);
 
 }  // namespace elrom::report

@@ -1,0 +1,166 @@
+// The report as JSON and CSV. NaN has no JSON form: it becomes null.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/text.hpp"
+#include "elrom/base/version.hpp"
+#include "elrom/report/accuracy.hpp"
+
+namespace elrom::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr FormatVersion format{1, 0};
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
+
+Json scores(const ErrorSums& sums) {
+  return {{"nrmse", number(sums.nrmse())},
+          {"rmse", number(sums.rmse())},
+          {"r2", number(sums.r2())},
+          {"standardised_mse", number(sums.standardised_mse())},
+          {"cells", sums.n}};
+}
+
+Json method_on_field(const AccuracyReport& report, const FieldAccuracy& field, std::size_t m) {
+  const auto& method = field.methods[m];
+  Json node{{"method", report.methods[m].file.name}};
+  if (!method.available) return node;
+  node["kind"] = method.kind;
+  node.update(scores(method.pooled));
+  node["nrmse_without_noise"] = number(field.nrmse_without_noise(m, report.cases.size()));
+  for (std::size_t i = 0; i < report.cases.size(); ++i) {
+    Json of_case{{"case", report.cases[i].name}};
+    of_case.update(scores(method.cases[i]));
+    const auto& worst = method.worst[i];
+    of_case["worst_cell"] = {{"cell", worst.cell.cell},
+                             {"position_m", worst.position},
+                             {"truth", number(worst.cell.truth)},
+                             {"prediction", number(worst.cell.prediction)}};
+    node["cases"].push_back(std::move(of_case));
+  }
+  return node;
+}
+
+Json coverage_of(const FieldAccuracy& field) {
+  Json node = Json::array();
+  for (std::size_t k = 0; k < field.coverage.size(); ++k) {
+    Json measured = Json::array();
+    double sum = 0;
+    for (const double share : field.coverage[k]) {
+      measured.push_back(number(share));
+      sum += share;
+    }
+    node.push_back({{"promised", coverage_levels[k]},
+                    {"measured", number(sum / static_cast<double>(field.coverage[k].size()))},
+                    {"by_case", std::move(measured)}});
+  }
+  return node;
+}
+
+Json field_node(const AccuracyReport& report, const FieldAccuracy& field) {
+  Json node{{"field", field.info.name}, {"unit", field.info.unit}, {"methods", Json::array()}};
+  for (std::size_t m = 0; m < report.methods.size(); ++m)
+    node["methods"].push_back(method_on_field(report, field, m));
+  if (const auto best = report.best_peer(field)) node["best_peer"] = report.methods[*best].file.name;
+  node["error_budget"] = {{"noise", field.noise ? number(field.budget.noise) : Json()},
+                          {"compression", number(field.budget.compression)},
+                          {"regression", number(field.budget.regression)}};
+  node["noise_nrmse"] = number(field.noise_nrmse);
+  Json compression = Json::array();
+  for (const double value : field.compression_nrmse) compression.push_back(number(value));
+  node["compression_nrmse_by_modes"] = std::move(compression);
+  node["coverage"] = coverage_of(field);
+  for (const auto& submodel : field.submodels) {
+    Json band{{"submodel", submodel.name}};
+    band.update(scores(submodel.sums));
+    node["submodels"].push_back(std::move(band));
+  }
+  return node;
+}
+
+Json case_node(const ScoredCase& scored) {
+  Json node{{"case", scored.name},
+            {"load", number(scored.load)},
+            {"validity", model::name_of(scored.validity.verdict)},
+            {"reason", scored.validity.reason},
+            {"p_value", number(scored.validity.p_value)}};
+  for (const auto& near : scored.validity.nearest)
+    node["nearest"].push_back(
+        {{"case", near.name}, {"load", number(near.load)}, {"distance", number(near.distance)}});
+  node["audit_truth"] = Json::parse(model::to_json(scored.truth_audit));
+  node["audit_prediction"] = Json::parse(model::to_json(scored.prediction_audit));
+  return node;
+}
+
+Json method_node(const MethodSummary& method) {
+  return {{"method", method.file.name},
+          {"bundle_digest", method.digest},
+          {"simple_peer", method.file.is_peer},
+          {"mean_nrmse", number(method.mean_nrmse)},
+          {"mean_nrmse_without_noise", number(method.mean_nrmse_without_noise)},
+          {"train_seconds", number(method.file.train_seconds)},
+          {"open_ms", method.open_ms},
+          {"predict_ms", method.predict_ms}};
+}
+
+}  // namespace
+
+std::string to_json(const AccuracyReport& report) {
+  Json root{{"kind", "elrom-accuracy"},
+            {"format", {format.major, format.minor}},
+            {"program", program_version()},
+            {"created", report.created},
+            {"study", report.study.name},
+            {"headline", headline(report)},
+            {"training_cases", report.n_training},
+            {"planes", report.n_planes},
+            {"columns", report.n_columns},
+            {"mean_nrmse", number(report.methods.front().mean_nrmse)},
+            {"gain_over_best_single_peer", number(report.gain())},
+            {"gain_without_noise", number(report.gain_without_noise())},
+            {"fields_at_or_below_every_simple_peer", report.fields_won()},
+            {"repeated_runs", report.repeats}};
+  if (const auto best = report.best_peer()) root["best_single_peer"] = report.methods[*best].file.name;
+  for (std::size_t k = 0; k < coverage_levels.size(); ++k)
+    root["coverage"].push_back(
+        {{"promised", coverage_levels[k]}, {"measured", number(report.mean_coverage(k))}});
+  for (const auto& method : report.methods) root["methods"].push_back(method_node(method));
+  for (const auto& field : report.fields) root["fields"].push_back(field_node(report, field));
+  for (const auto& scored : report.cases) root["cases"].push_back(case_node(scored));
+  root["stage_seconds"] = report.study.stage_seconds;
+  return root.dump(1) + '\n';
+}
+
+std::string to_csv(const AccuracyReport& report) {
+  std::string text =
+      "field,unit,method,case,load,nrmse,rmse,r2,standardised_mse,worst_x_m,worst_y_m,worst_z_m,worst_truth,"
+      "worst_prediction\n";
+  const auto write = [](double value) { return std::isfinite(value) ? base::number(value) : std::string(); };
+  const auto of_sums = [&](const ErrorSums& s) {
+    return fmt::format("{},{},{},{}", write(s.nrmse()), write(s.rmse()), write(s.r2()),
+                       write(s.standardised_mse()));
+  };
+  for (const auto& field : report.fields)
+    for (std::size_t m = 0; m < report.methods.size(); ++m) {
+      const auto& method = field.methods[m];
+      if (!method.available) continue;
+      const auto start =
+          fmt::format("{},{},{}", field.info.name, field.info.unit, report.methods[m].file.name);
+      text += fmt::format("{},all,,{},,,,,\n", start, of_sums(method.pooled));
+      for (std::size_t i = 0; i < report.cases.size(); ++i) {
+        const auto& worst = method.worst[i];
+        text += fmt::format("{},{},{},{},{},{},{},{},{}\n", start, report.cases[i].name,
+                            write(report.cases[i].load), of_sums(method.cases[i]), write(worst.position[0]),
+                            write(worst.position[1]), write(worst.position[2]), write(worst.cell.truth),
+                            write(worst.cell.prediction));
+      }
+    }
+  return text;
+}
+
+}  // namespace elrom::report

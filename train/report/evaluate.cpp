@@ -1,0 +1,261 @@
+// Scores every bundle of a study on the held-out cases, one field at a time so that memory stays flat.
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/field/snapshot_store.hpp"
+#include "elrom/model/bundle.hpp"
+#include "elrom/report/accuracy.hpp"
+#include "evaluate_field.hpp"
+
+namespace elrom::report {
+namespace {
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::size_t> rows_of(const field::SnapshotStore& store, const std::vector<std::string>& names) {
+  std::vector<std::size_t> rows;
+  for (const auto& name : names) {
+    const auto found = store.find(name);
+    if (found.size() != 1)
+      throw InputError({.what = "the store does not hold case '" + name + "' of the study's split",
+                        .where = store.path().string(),
+                        .advice = "name the store the study was trained on with --store"});
+    rows.push_back(found.front());
+  }
+  return rows;
+}
+
+// Runs of the same boundary conditions: each set holds one scored case and its repeats, or repeats alone.
+std::vector<std::vector<std::size_t>> repeat_sets(const MatrixD& inputs, const std::vector<bool>& is_repeat) {
+  std::vector<std::vector<std::size_t>> sets;
+  std::vector<bool> taken(is_repeat.size(), false);
+  for (std::size_t i = 0; i < is_repeat.size(); ++i) {
+    if (taken[i]) continue;
+    std::vector<std::size_t> set{i};
+    bool any_repeat = is_repeat[i];
+    for (std::size_t j = i + 1; j < is_repeat.size(); ++j) {
+      const auto a = inputs.row(static_cast<Eigen::Index>(i)), b = inputs.row(static_cast<Eigen::Index>(j));
+      if (taken[j] || !((a - b).cwiseAbs().array() <= 1e-9 * a.cwiseAbs().array()).all()) continue;
+      taken[j] = true;
+      any_repeat = any_repeat || is_repeat[j];
+      set.push_back(j);
+    }
+    if (any_repeat && set.size() >= 2) sets.push_back(std::move(set));
+  }
+  return sets;
+}
+
+HeldOutCases hold_out_cases(const field::SnapshotStore& store, const StudyFiles& study) {
+  const auto rows = rows_of(store, study.held_out);
+  std::vector<bool> is_repeat;
+  HeldOutCases cases;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    is_repeat.push_back(base::matches(study.held_out[i], "rep*"));
+    if (!is_repeat.back()) cases.scored.push_back(rows[i]);
+  }
+  if (cases.scored.empty())
+    throw UsageError({.what = "no held-out case to score",
+                      .where = study.directory.string(),
+                      .advice = "name some in study.toml: [split] held_out = [\"load_*\"]"});
+  for (const auto& set : repeat_sets(store.inputs(rows), is_repeat)) {
+    cases.repeats.emplace_back();
+    for (const std::size_t i : set) cases.repeats.back().push_back(rows[i]);
+  }
+  cases.building = rows_of(store, study.building);
+  cases.inputs = store.inputs(cases.scored);
+  return cases;
+}
+
+void check_bundle(const model::BundleReader& bundle, const field::SnapshotStore& store) {
+  if (bundle.mesh_digest() != store.mesh().digest())
+    throw InputError({.what = "bundle and store are of different meshes",
+                      .where = bundle.file().where(),
+                      .found = bundle.mesh_digest().substr(0, 12),
+                      .expected = store.mesh().digest().substr(0, 12) + " of " + store.path().string()});
+  if (bundle.info().schema.names() != store.schema().names())
+    throw InputError(
+        {.what = "bundle and store have different boundary conditions", .where = bundle.file().where()});
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Opening and predicting all fields of one case, as a caller of the library would; the median of a few.
+MethodSummary summarise(const BundleFile& file, const field::SnapshotStore& store, const HeldOutCases& cases,
+                        int n_threads) {
+  MethodSummary summary{.file = file};
+  const auto opened = std::chrono::steady_clock::now();
+  const model::Predictor predictor(file.path);
+  summary.open_ms = milliseconds_since(opened);
+  check_bundle(predictor.bundle(), store);
+  summary.digest = predictor.bundle().digest();
+  std::vector<float> values(predictor.size());
+  model::Predictor::Scratch scratch;
+  std::vector<double> times;
+  for (int repeat = 0; repeat < 6; ++repeat) {
+    const auto start = std::chrono::steady_clock::now();
+    predictor.predict(case_inputs(cases, 0), values, {}, scratch, n_threads);
+    if (repeat > 0) times.push_back(milliseconds_since(start));
+  }
+  std::nth_element(times.begin(), times.begin() + 2, times.end());
+  summary.predict_ms = times[2];
+  return summary;
+}
+
+model::Audit audit_truth(const field::SnapshotStore& store, std::size_t row, std::span<const double> inputs) {
+  const auto& fields = store.fields();
+  std::vector<float> values;
+  for (const auto& info : fields) {
+    const auto cells = store.read(info.name, std::array{row});
+    values.insert(values.end(), cells.data(), cells.data() + cells.size());
+  }
+  return model::audit({store.mesh(), store.schema(), inputs, fields, values});
+}
+
+// Validity verdict and physics audit of each scored case.
+std::vector<ScoredCase> describe_cases(const field::SnapshotStore& store, const HeldOutCases& cases,
+                                       const BundleFile& model, int n_threads) {
+  const model::Predictor predictor(model.path);
+  const auto guard = predictor.bundle().guard();
+  std::vector<float> values(predictor.size());
+  model::Predictor::Scratch scratch;
+  std::vector<ScoredCase> described;
+  for (std::size_t i = 0; i < cases.scored.size(); ++i) {
+    const auto inputs = case_inputs(cases, i);
+    const auto& record = store.cases()[cases.scored[i]];
+    predictor.predict(inputs, values, {}, scratch, n_threads);
+    described.push_back({.name = record.inputs.name,
+                         .load = record.inputs.load,
+                         .validity = guard.assess(inputs),
+                         .truth_audit = audit_truth(store, cases.scored[i], inputs),
+                         .prediction_audit = model::audit(
+                             {store.mesh(), store.schema(), inputs, predictor.fields(), values})});
+  }
+  return described;
+}
+
+void average_over_fields(AccuracyReport& report) {
+  for (std::size_t m = 0; m < report.methods.size(); ++m) {
+    double sum = 0, clean = 0;
+    for (const auto& field : report.fields) {
+      sum += field.nrmse(m);
+      clean += field.nrmse_without_noise(m, report.cases.size());
+    }
+    const auto n = static_cast<double>(report.fields.size());
+    report.methods[m].mean_nrmse = sum / n;
+    report.methods[m].mean_nrmse_without_noise = clean / n;
+  }
+}
+
+std::string now_utc() {
+  return fmt::format("{:%Y-%m-%d %H:%M} UTC",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+}
+
+}  // namespace
+
+AccuracyReport evaluate(const AccuracyOptions& options, Log& log, const std::stop_token& stop) {
+  AccuracyReport report{.study = open_study(options.study, options.store), .created = now_utc()};
+  const auto store = field::SnapshotStore::open(report.study.store);
+  const auto cases = hold_out_cases(store, report.study);
+  report.n_training = cases.building.size();
+  report.n_planes = store.mesh().n_planes;
+  report.n_columns = store.mesh().n_columns;
+  for (const auto& set : cases.repeats)
+    for (const std::size_t row : set) report.repeats.push_back(store.cases()[row].inputs.name);
+  auto bundles = report.study.bundles;
+  for (const auto& other : options.against) bundles.push_back(open_other(other));
+  for (const auto& bundle : bundles)
+    report.methods.push_back(summarise(bundle, store, cases, options.n_threads));
+  report.cases = describe_cases(store, cases, bundles.front(), options.n_threads);
+
+  const auto fields = model::BundleReader(bundles.front().path).info().fields;
+  if (options.figures)
+    report.figures = start_figures(store.mesh(), bundles, fields.size(), cases.scored.size());
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (stop.stop_requested()) throw Interrupted("stopped before the report was complete");
+    log.progress({.task = "score",
+                  .done = static_cast<std::int64_t>(f),
+                  .total = static_cast<std::int64_t>(fields.size()),
+                  .unit = "fields"});
+    report.fields.push_back(evaluate_field({store, cases, bundles, fields[f], options.n_threads},
+                                           report.figures ? &*report.figures : nullptr));
+  }
+  log.progress({.task = "score",
+                .done = static_cast<std::int64_t>(fields.size()),
+                .total = static_cast<std::int64_t>(fields.size()),
+                .unit = "fields"});
+  average_over_fields(report);
+  return report;
+}
+
+double FieldAccuracy::nrmse(std::size_t method) const {
+  return methods[method].available ? methods[method].pooled.nrmse() : undefined;
+}
+
+double FieldAccuracy::nrmse_without_noise(std::size_t method, std::size_t n_cases) const {
+  if (!noise || !methods[method].available) return undefined;
+  return report::nrmse_without_noise(methods[method].pooled, *noise * static_cast<double>(n_cases));
+}
+
+std::optional<std::size_t> AccuracyReport::best_peer() const {
+  std::optional<std::size_t> best;
+  for (std::size_t m = 1; m < methods.size(); ++m)
+    if (methods[m].file.is_peer && std::isfinite(methods[m].mean_nrmse) &&
+        (!best || methods[m].mean_nrmse < methods[*best].mean_nrmse))
+      best = m;
+  return best;
+}
+
+std::optional<std::size_t> AccuracyReport::best_peer(const FieldAccuracy& field) const {
+  std::optional<std::size_t> best;
+  for (std::size_t m = 1; m < methods.size(); ++m)
+    if (methods[m].file.is_peer && std::isfinite(field.nrmse(m)) &&
+        (!best || field.nrmse(m) < field.nrmse(*best)))
+      best = m;
+  return best;
+}
+
+double AccuracyReport::gain() const {
+  const auto best = best_peer();
+  return best ? 1 - methods[0].mean_nrmse / methods[*best].mean_nrmse : undefined;
+}
+
+double AccuracyReport::gain_without_noise() const {
+  const auto best = best_peer();
+  return best ? 1 - methods[0].mean_nrmse_without_noise / methods[*best].mean_nrmse_without_noise : undefined;
+}
+
+std::size_t AccuracyReport::fields_won() const {
+  return static_cast<std::size_t>(
+      std::count_if(fields.begin(), fields.end(), [this](const FieldAccuracy& field) {
+        const auto best = best_peer(field);
+        return best && field.nrmse(0) <= field.nrmse(*best);
+      }));
+}
+
+double AccuracyReport::mean_coverage(std::size_t i_level) const {
+  double sum = 0;
+  std::size_t n = 0;
+  for (const auto& field : fields) {
+    if (field.coverage.size() <= i_level) continue;
+    for (const double share : field.coverage[i_level]) {
+      if (!std::isfinite(share)) continue;
+      sum += share;
+      ++n;
+    }
+  }
+  return n > 0 ? sum / static_cast<double>(n) : undefined;
+}
+
+}  // namespace elrom::report

@@ -1,0 +1,199 @@
+#include "evaluate_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "elrom/base/error.hpp"
+#include "elrom/model/banded_networks.hpp"
+
+namespace elrom::report {
+namespace {
+
+/// Predictions of one method, (n_cases, n_cells); empty where the bundle lacks the field.
+MatrixF predict_cases(const FieldTask& task, const BundleFile& bundle, std::optional<double> level = {},
+                      MatrixF* half_width = nullptr) {
+  const model::BundleReader reader(bundle.path);
+  const auto& fields = reader.info().fields;
+  if (std::none_of(fields.begin(), fields.end(), [&](const auto& f) { return f.name == task.info.name; }))
+    return {};
+  const model::Predictor predictor(bundle.path, {.fields = {task.info.name}, .interval_level = level});
+  const auto n_cases = static_cast<Eigen::Index>(task.cases.scored.size());
+  const auto n_cells = static_cast<Eigen::Index>(predictor.size());
+  MatrixF values(n_cases, n_cells);
+  if (half_width != nullptr) half_width->resize(n_cases, n_cells);
+  model::Predictor::Scratch scratch;
+  for (Eigen::Index i = 0; i < n_cases; ++i)
+    predictor.predict(case_inputs(task.cases, static_cast<std::size_t>(i)),
+                      {values.row(i).data(), predictor.size()},
+                      half_width != nullptr ? std::span<float>(half_width->row(i).data(), predictor.size())
+                                            : std::span<float>{},
+                      scratch, task.n_threads);
+  return values;
+}
+
+std::span<const float> row(const MatrixF& values, std::size_t i) {
+  return {values.row(static_cast<Eigen::Index>(i)).data(), static_cast<std::size_t>(values.cols())};
+}
+
+MethodField score_method(const FieldTask& task, const MatrixF& truth, const MatrixF& prediction,
+                         const TrainingStatistics& statistics) {
+  MethodField result;
+  result.available = prediction.size() > 0;
+  if (!result.available) return result;
+  for (std::size_t i = 0; i < task.cases.scored.size(); ++i) {
+    result.cases.push_back(error_sums(row(truth, i), row(prediction, i), statistics));
+    result.pooled += result.cases.back();
+    const auto worst = worst_cell(row(truth, i), row(prediction, i));
+    const auto centre = task.store.mesh().centre.row(static_cast<Eigen::Index>(worst.cell));
+    result.worst.push_back({worst, {centre(0), centre(1), centre(2)}});
+  }
+  return result;
+}
+
+// Cells a submodel answers for, in all planes.
+std::vector<std::size_t> cells_of(const model::Submodel& submodel, std::size_t n_planes,
+                                  std::size_t n_columns) {
+  std::vector<std::size_t> cells;
+  for (std::size_t plane = 0; plane < n_planes; ++plane)
+    for (std::size_t j = 0; j < submodel.columns.size(); ++j)
+      if (submodel.answers(plane, j))
+        cells.push_back(plane * n_columns + static_cast<std::size_t>(submodel.columns[j]));
+  return cells;
+}
+
+std::vector<SubmodelScore> score_submodels(const model::BandedNetworks& networks, const MatrixF& truth,
+                                           const MatrixF& prediction, const TrainingStatistics& statistics) {
+  std::vector<SubmodelScore> scores;
+  const auto n_columns = networks.n_columns();
+  for (const auto& submodel : networks.parts().submodels) {
+    const auto cells = cells_of(submodel, static_cast<std::size_t>(truth.cols()) / n_columns, n_columns);
+    SubmodelScore score{.name = submodel.name, .n_cells = cells.size()};
+    for (Eigen::Index i = 0; i < truth.rows() && !cells.empty(); ++i)
+      score.sums += error_sums(row(truth, static_cast<std::size_t>(i)),
+                               row(prediction, static_cast<std::size_t>(i)), statistics, cells);
+    scores.push_back(std::move(score));
+  }
+  return scores;
+}
+
+// Mean over the sets of repeated runs of the energy of one run's noise.
+std::optional<double> noise_of(const FieldTask& task) {
+  double sum = 0;
+  for (const auto& runs : task.cases.repeats) sum += noise_energy(task.store.read(task.info.name, runs));
+  if (task.cases.repeats.empty()) return std::nullopt;
+  return sum / static_cast<double>(task.cases.repeats.size());
+}
+
+void budget_errors(const MatrixF& training, const MatrixF& truth, FieldAccuracy& result) {
+  const CaseSpan span(training);
+  std::vector<double> residuals(span.n_modes() + 1, 0.0);
+  for (Eigen::Index i = 0; i < truth.rows(); ++i) {
+    const auto of_case = span.residuals(row(truth, static_cast<std::size_t>(i)));
+    for (std::size_t r = 0; r < residuals.size(); ++r) residuals[r] += of_case[r];
+  }
+  const auto& sums = result.methods.front().pooled;
+  const auto n_cases = static_cast<double>(truth.rows());
+  for (const double residual : residuals)
+    result.compression_nrmse.push_back(std::sqrt(residual / residuals.front()));
+  result.budget = error_budget(sums, result.noise.value_or(0) * n_cases, residuals.back());
+  if (result.noise && sums.departure > 0)
+    result.noise_nrmse = std::sqrt(*result.noise * n_cases / sums.departure);
+}
+
+// Measured coverage at every level; the mean half-widths of planes at 90 % go to the drawings.
+void measure_coverage(const FieldTask& task, const MatrixF& truth, FieldAccuracy& result,
+                      FieldFigures* figures) {
+  const auto& bundle = task.bundles.front();
+  if (!model::BundleReader(bundle.path).uncertainty(task.info.name)) return;
+  for (const double level : coverage_levels) {
+    auto& shares =
+        result.coverage.emplace_back(task.cases.scored.size(), std::numeric_limits<double>::quiet_NaN());
+    MatrixF half_width, prediction;
+    try {
+      prediction = predict_cases(task, bundle, level, &half_width);
+    } catch (const UsageError&) {
+      continue;  // so few cases cannot promise this level
+    }
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      shares[i] = covered_share(row(truth, i), row(prediction, i), row(half_width, i));
+      if (figures != nullptr && level == 0.9)
+        figures->half_width.push_back(plane_means(task.store.mesh(), row(half_width, i)));
+    }
+  }
+}
+
+struct Range {
+  double low, high;
+};
+Range range_of(const MatrixF& values) { return {values.minCoeff(), values.maxCoeff()}; }
+
+FieldFigures draw(const FieldTask& task, const Figures& figures, const MatrixF& truth,
+                  const std::vector<MatrixF>& predictions) {
+  constexpr std::size_t error_bins = 61, parity_bins = 48;
+  FieldFigures field;
+  const auto& mesh = task.store.mesh();
+  for (std::size_t i = 0; i < task.cases.scored.size(); ++i) {
+    auto& profiles = field.profiles.emplace_back();
+    profiles.push_back(plane_means(mesh, row(truth, i)));
+    for (const auto& prediction : predictions)
+      profiles.push_back(prediction.size() > 0 ? plane_means(mesh, row(prediction, i))
+                                               : std::vector<double>{});
+    auto& cuts = field.cuts.emplace_back();
+    cuts.push_back(on_cuts(figures.cuts, row(truth, i)));
+    for (const std::size_t m : figures.cut_methods)
+      cuts.push_back(predictions[m].size() > 0 ? on_cuts(figures.cuts, row(predictions[m], i))
+                                               : std::vector<float>{});
+  }
+  const auto& model = predictions.front();
+  const double reach =
+      3 * std::sqrt((model - truth).cast<double>().squaredNorm() / static_cast<double>(truth.size()));
+  for (const auto& prediction : predictions) {
+    auto& histogram = field.errors.emplace_back(-reach, reach, error_bins);
+    for (Eigen::Index k = 0; k < prediction.size(); ++k)
+      histogram.add(double{prediction.data()[k]} - truth.data()[k]);
+  }
+  const auto [low, high] = range_of(truth);
+  field.parity = ParityMap(low, high, parity_bins);
+  for (Eigen::Index k = 0; k < truth.size(); ++k) field.parity.add(truth.data()[k], model.data()[k]);
+  return field;
+}
+
+}  // namespace
+
+FieldAccuracy evaluate_field(const FieldTask& task, Figures* figures) {
+  FieldAccuracy result{.info = task.info};
+  const auto training = task.store.read(task.info.name, task.cases.building);
+  const auto truth = task.store.read(task.info.name, task.cases.scored);
+  const auto statistics = training_statistics(training, task.store.mesh().n_columns);
+  std::vector<MatrixF> predictions;
+  for (const auto& bundle : task.bundles) {
+    predictions.push_back(predict_cases(task, bundle));
+    result.methods.push_back(score_method(task, truth, predictions.back(), statistics));
+    if (!result.methods.back().available) continue;
+    const auto model = model::BundleReader(bundle.path).model(task.info.name, false);
+    result.methods.back().kind = model->kind();
+    const auto* networks = dynamic_cast<const model::BandedNetworks*>(model.get());
+    if (networks != nullptr && result.submodels.empty())
+      result.submodels = score_submodels(*networks, truth, predictions.back(), statistics);
+  }
+  result.noise = noise_of(task);
+  budget_errors(training, truth, result);
+  if (figures != nullptr) figures->fields.push_back(draw(task, *figures, truth, predictions));
+  measure_coverage(task, truth, result, figures != nullptr ? &figures->fields.back() : nullptr);
+  return result;
+}
+
+Figures start_figures(const field::Mesh& mesh, const std::vector<BundleFile>& bundles, std::size_t n_fields,
+                      std::size_t n_cases) {
+  constexpr std::size_t most_values =
+      2'000'000;  // two bytes each, a third more as text: the page stays below 8 MB
+  Figures figures{.cuts = middle_cuts(mesh), .heights = mesh.plane_heights()};
+  std::size_t per_series = 0;
+  for (const auto& cut : figures.cuts) per_series += cut.cells.size() * n_fields * n_cases;
+  for (std::size_t m = 0; m < bundles.size(); ++m)
+    if (m == 0 || (m + 2) * per_series <= most_values) figures.cut_methods.push_back(m);
+  return figures;
+}
+
+}  // namespace elrom::report

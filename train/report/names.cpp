@@ -1,0 +1,45 @@
+#include "names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace elrom::report {
+
+std::string method_label(const std::string& name) {
+  static const std::map<std::string, std::string> labels{
+      {"nearest", "nearest case"}, {"linear", "linear"},
+      {"pod_gp", "POD + GP"},      {"pod_gp_per_mode", "POD + GP per mode"},
+      {"pod_rbf", "POD + RBF"},    {"pod_mlp", "POD + MLP"},
+      {"networks", "networks"},    {"kernel", "kernel"}};
+  const auto found = labels.find(name);
+  return found == labels.end() ? name : found->second;
+}
+
+std::string field_label(const std::string& name) {
+  auto label = name;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+std::string score_text(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+}
+
+std::string percent_text(double share, int decimals) {
+  return std::isfinite(share) ? fmt::format("{:.{}f} %", 100 * share, decimals) : "-";
+}
+
+std::string value_text(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return "-";
+  return unit == "1" || unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+}
+
+ShownUnit shown_unit(const std::string& field, const std::string& unit) {
+  if (unit == "m" && field.ends_with("diameter")) return {"µm", 1e6};
+  return {unit, 1};
+}
+
+}  // namespace elrom::report

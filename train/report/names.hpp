@@ -1,0 +1,26 @@
+#pragma once
+// How methods, fields and numbers are written in reports.
+
+#include <string>
+
+namespace elrom::report {
+
+/// "pod_gp" -> "POD + GP"; unknown names stay.
+[[nodiscard]] std::string method_label(const std::string& name);
+/// "solid_velocity_z" -> "solid velocity z"
+[[nodiscard]] std::string field_label(const std::string& name);
+/// Three decimals; "-" for what is not known.
+[[nodiscard]] std::string score_text(double value, int decimals = 3);
+/// "8.3 %" of 0.083; "-" for what is not known.
+[[nodiscard]] std::string percent_text(double share, int decimals = 1);
+/// Four significant digits with the unit; velocities and pressures as they are, diameters in micrometres.
+[[nodiscard]] std::string value_text(double value, const std::string& unit);
+
+/// Unit to show a field in, and the factor from SI to it.
+struct ShownUnit {
+  std::string symbol;
+  double factor = 1;
+};
+[[nodiscard]] ShownUnit shown_unit(const std::string& field, const std::string& unit);
+
+}  // namespace elrom::report
