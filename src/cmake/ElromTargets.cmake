@@ -40,17 +40,22 @@ function(elrom_library name)
 endfunction()
 
 # elrom_program(elrom-xyz SOURCES ... LINKS ...) -> <build>/bin/elrom-xyz, installed to bin.
+# The target is elrom-xyz, or elrom-xyz-program where a library's target has that name.
 function(elrom_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   list(GET ARG_SOURCES 0 first_source)
   if(NOT first_source OR NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${first_source} AND NOT EXISTS ${first_source})
     return()
   endif()
-  add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE ${ARG_LINKS})
-  elrom_compile_options(${name})
-  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
-  install(TARGETS ${name} RUNTIME DESTINATION bin)
+  set(target ${name})
+  if(TARGET ${name})
+    set(target ${name}-program)
+  endif()
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE ${ARG_LINKS})
+  elrom_compile_options(${target})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  install(TARGETS ${target} RUNTIME DESTINATION bin)
 endfunction()
 
 # elrom_test(path/to/file_test.cpp LINKS ...) -> one executable with one CTest entry a test case.

@@ -136,22 +136,25 @@
     const middle = left + extents[k].width * perMetre / 2;
     pen.fillText(cut.title, middle, margin.top - 8);
     const step = extents[k].width > 15 ? 10 : 5;
-    for (let u = 0; u <= extents[k].width; u += step) {
+    const [u0, z0] = cut.low;
+    for (let u = Math.ceil(u0 / step) * step; u <= u0 + extents[k].width; u += step) {
+      const at = left + (u - u0) * perMetre;
       pen.beginPath();
-      pen.moveTo(left + u * perMetre, floor + 1);
-      pen.lineTo(left + u * perMetre, floor + 5);
+      pen.moveTo(at, floor + 1);
+      pen.lineTo(at, floor + 5);
       pen.stroke();
-      pen.fillText(String(u), left + u * perMetre, floor + 17);
+      pen.fillText(String(u), at, floor + 17);
     }
     pen.fillText(cut.horizontal, middle, floor + 31);
     if (k > 0) return;
     pen.textAlign = "right";
-    for (let z = 0; z <= extents[k].height; z += 10) {
+    for (let z = Math.ceil(z0 / 10) * 10; z <= z0 + extents[k].height; z += 10) {
+      const at = floor - (z - z0) * perMetre;
       pen.beginPath();
-      pen.moveTo(left - 5, floor - z * perMetre);
-      pen.lineTo(left - 1, floor - z * perMetre);
+      pen.moveTo(left - 5, at);
+      pen.lineTo(left - 1, at);
       pen.stroke();
-      pen.fillText(String(z), left - 8, floor - z * perMetre + 4);
+      pen.fillText(String(z), left - 8, at + 4);
     }
     pen.save();
     pen.translate(10, (margin.top + floor) / 2);
@@ -214,8 +217,8 @@
       for (let i = 0; i < place.n; ++i) {
         if (!contains(corners[k], i, u, z)) continue;
         const at = place.offset + i, unit = current.field.unit === "1" ? "" : " " + current.field.unit;
-        $("#readout").innerHTML = data.cuts[k].title + ", " + data.cuts[k].horizontal[0] + " = " + u.toFixed(1) + " m, z = " +
-          z.toFixed(1) + " m: EL3D <b>" + shown(current.truth[at], current.field) + unit + "</b>, predicted <b>" +
+        $("#readout").innerHTML = data.cuts[k].title + ", " + data.cuts[k].horizontal[0] + " = " +
+          (u + data.cuts[k].low[0]).toFixed(1) + " m, z = " + (z + data.cuts[k].low[1]).toFixed(1) + " m: EL3D <b>" + shown(current.truth[at], current.field) + unit + "</b>, predicted <b>" +
           shown(current.prediction[at], current.field) + unit + "</b>, difference <b>" +
           shown(current.difference[at], current.field) + unit + "</b>";
         return;

@@ -1,0 +1,37 @@
+#pragma once
+// Sections of the page; each returns HTML. Internal to page*.cpp.
+
+#include <string>
+#include <string_view>
+
+#include "elrom/report/page.hpp"
+
+namespace elrom::report {
+
+/// Series class of a method, the same in every table and drawing: "s0" is the study's model.
+[[nodiscard]] std::string series_class(const AccuracyReport& report, std::size_t method);
+/// <ul> of line samples for methods, the truth first where asked.
+[[nodiscard]] std::string method_legend(const AccuracyReport& report, bool with_truth);
+[[nodiscard]] std::string section(std::string_view id, std::string_view title, std::string_view lead, std::string_view body);
+
+[[nodiscard]] std::string key_figures(const AccuracyReport& report);
+[[nodiscard]] std::string score_tables(const AccuracyReport& report);
+[[nodiscard]] std::string worst_cell_table(const AccuracyReport& report);
+[[nodiscard]] std::string submodel_table(const AccuracyReport& report);
+[[nodiscard]] std::string validity_table(const AccuracyReport& report);
+[[nodiscard]] std::string audit_table(const AccuracyReport& report);
+[[nodiscard]] std::string provenance(const AccuracyReport& report);
+
+[[nodiscard]] std::string load_section(const AccuracyReport& report);
+[[nodiscard]] std::string budget_section(const AccuracyReport& report);
+[[nodiscard]] std::string coverage_section(const AccuracyReport& report);
+[[nodiscard]] std::string error_section(const AccuracyReport& report);
+[[nodiscard]] std::string profile_section(const AccuracyReport& report);
+[[nodiscard]] std::string search_section(const std::vector<study::TrialStore::Search>& searches);
+[[nodiscard]] std::string learning_section(const LearningCurve& curve);
+[[nodiscard]] std::string cost_section(const CostReport& cost);
+
+/// The viewer of cuts and its embedded data.
+[[nodiscard]] std::string cut_section(const AccuracyReport& report);
+
+}  // namespace elrom::report
