@@ -19,10 +19,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double training_time(const CostPoint& point) { return point.train_seconds.value_or(std::numeric_limits<double>::infinity()); }
+double training_time(const CostPoint& point) {
+  return point.train_seconds.value_or(std::numeric_limits<double>::infinity());
+}
 
 bool beats(const CostPoint& a, const CostPoint& b) {
-  const bool no_worse = a.error <= b.error && training_time(a) <= training_time(b) && a.predict_ms <= b.predict_ms;
+  const bool no_worse =
+      a.error <= b.error && training_time(a) <= training_time(b) && a.predict_ms <= b.predict_ms;
   const bool better = a.error < b.error || training_time(a) < training_time(b) || a.predict_ms < b.predict_ms;
   return no_worse && better;
 }
@@ -32,21 +35,24 @@ bool beats(const CostPoint& a, const CostPoint& b) {
 void mark_front(std::vector<CostPoint>& points) {
   for (auto& point : points)
     point.front = std::isfinite(point.error) &&
-                  std::none_of(points.begin(), points.end(), [&](const CostPoint& other) { return beats(other, point); });
+                  std::none_of(points.begin(), points.end(),
+                               [&](const CostPoint& other) { return beats(other, point); });
 }
 
 CostReport cost_report(const CostOptions& options, Log& log, const std::stop_token& stop) {
   if (options.studies.empty()) throw UsageError("no study to report on; name at least one study directory");
   CostReport report;
   for (const auto& study : options.studies) {
-    const auto accuracy = evaluate({.study = study, .store = options.store, .n_threads = options.n_threads}, log, stop);
+    const auto accuracy =
+        evaluate({.study = study, .store = options.store, .n_threads = options.n_threads}, log, stop);
     for (std::size_t m = 0; m < accuracy.methods.size(); ++m) {
       if (m > 0 && !options.peers) break;
       const auto& method = accuracy.methods[m];
-      report.points.push_back({.name = m == 0 ? accuracy.study.name : accuracy.study.name + ": " + method.file.name,
-                               .error = method.mean_nrmse,
-                               .train_seconds = method.file.train_seconds,
-                               .predict_ms = method.open_ms + method.predict_ms});
+      report.points.push_back(
+          {.name = m == 0 ? accuracy.study.name : accuracy.study.name + ": " + method.file.name,
+           .error = method.mean_nrmse,
+           .train_seconds = method.file.train_seconds,
+           .predict_ms = method.open_ms + method.predict_ms});
     }
   }
   mark_front(report.points);
@@ -54,7 +60,8 @@ CostReport cost_report(const CostOptions& options, Log& log, const std::stop_tok
 }
 
 std::string to_json(const CostReport& report) {
-  Json root{{"kind", "elrom-cost"}, {"format", {1, 0}}, {"program", program_version()}, {"points", Json::array()}};
+  Json root{
+      {"kind", "elrom-cost"}, {"format", {1, 0}}, {"program", program_version()}, {"points", Json::array()}};
   for (const auto& point : report.points)
     root["points"].push_back({{"name", point.name},
                               {"error", std::isfinite(point.error) ? Json(point.error) : Json()},
@@ -69,8 +76,10 @@ CostReport read_cost_report(const std::filesystem::path& path) {
   try {
     CostReport report;
     for (const auto& node : root.at("points")) {
-      CostPoint point{.name = node.at("name"), .predict_ms = node.at("predict_ms"), .front = node.at("front")};
-      point.error = node.at("error").is_null() ? std::numeric_limits<double>::quiet_NaN() : node.at("error").get<double>();
+      CostPoint point{
+          .name = node.at("name"), .predict_ms = node.at("predict_ms"), .front = node.at("front")};
+      point.error = node.at("error").is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                               : node.at("error").get<double>();
       if (!node.at("train_seconds").is_null()) point.train_seconds = node.at("train_seconds").get<double>();
       report.points.push_back(std::move(point));
     }
@@ -83,17 +92,20 @@ CostReport read_cost_report(const std::filesystem::path& path) {
 std::string terminal_table(const CostReport& report) {
   std::size_t width = 12;
   for (const auto& point : report.points) width = std::max(width, point.name.size());
-  auto text = fmt::format("\n  {:<{}}  {:>8}  {:>9}  {:>14}  {:>11}\n", "what", width, "error", "change", "training", "prediction");
+  auto text = fmt::format("\n  {:<{}}  {:>8}  {:>9}  {:>14}  {:>11}\n", "what", width, "error", "change",
+                          "training", "prediction");
   text += "  " + std::string(width + 50, '-') + '\n';
   for (const auto& point : report.points) {
     const double change = point.error / report.points.front().error - 1;
-    text += fmt::format("  {:<{}}  {:>8}  {:>9}  {:>14}  {:>8.1f} ms{}\n", point.name, width, score_text(point.error, 4),
+    text += fmt::format("  {:<{}}  {:>8}  {:>9}  {:>14}  {:>8.1f} ms{}\n", point.name, width,
+                        score_text(point.error, 4),
                         &point == &report.points.front() ? "" : fmt::format("{:+.1f} %", 100 * change),
-                        point.train_seconds ? base::duration(*point.train_seconds) : "not kept", point.predict_ms,
-                        point.front ? "  *" : "");
+                        point.train_seconds ? base::duration(*point.train_seconds) : "not kept",
+                        point.predict_ms, point.front ? "  *" : "");
   }
-  return text + "\n  error: mean NRMSE over fields on the held-out cases; change: against the first line\n"
-                "  * no other is at least as good in error, training and prediction, and better in one\n";
+  return text +
+         "\n  error: mean NRMSE over fields on the held-out cases; change: against the first line\n"
+         "  * no other is at least as good in error, training and prediction, and better in one\n";
 }
 
 }  // namespace elrom::report

@@ -15,54 +15,66 @@ using svg::escape;
 
 std::string navigation(const PageExtras& extras) {
   std::string links =
-      "<a href=\"#table\">Scores</a><a href=\"#cuts\">Cuts</a><a href=\"#profiles\">Profiles</a><a href=\"#loads\">Loads</a>"
+      "<a href=\"#table\">Scores</a><a href=\"#cuts\">Cuts</a><a href=\"#profiles\">Profiles</a><a "
+      "href=\"#loads\">Loads</a>"
       "<a href=\"#budget\">Error budget</a><a href=\"#coverage\">Coverage</a><a href=\"#errors\">Errors</a>"
       "<a href=\"#validity\">Validity</a>";
   if (extras.learning_curve) links += "<a href=\"#learning\">More cases</a>";
   if (extras.cost) links += "<a href=\"#cost\">Cost</a>";
   if (!extras.searches.empty()) links += "<a href=\"#search\">Search</a>";
-  return fmt::format("<nav><div class=\"bar\"><b>ELROM</b>{}<button id=\"theme\" type=\"button\">Light / dark</button></div></nav>",
-                     links);
+  return fmt::format(
+      "<nav><div class=\"bar\"><b>ELROM</b>{}<button id=\"theme\" type=\"button\">Light / "
+      "dark</button></div></nav>",
+      links);
 }
 
 std::string opening(const AccuracyReport& report) {
   return fmt::format(
-      "<header><p class=\"over\">Accuracy of study <b>{}</b> on cases it never saw &middot; {} planes &times; {} columns &middot; {} "
+      "<header><p class=\"over\">Accuracy of study <b>{}</b> on cases it never saw &middot; {} planes "
+      "&times; {} columns &middot; {} "
       "training cases &middot; {}</p><h1>{}</h1>{}</header>",
       escape(report.study.name), report.n_planes, report.n_columns, report.n_training, escape(report.created),
       escape(headline(report)), key_figures(report));
 }
 
 std::string validity_section(const AccuracyReport& report) {
-  return section("validity", "Validity and physics of the held-out cases",
-                 "Where each case lies among the training cases, and what the fields say about mass and pressure. EL3D's own averages "
-                 "do not close their balances exactly either: compare the two rows.",
-                 validity_table(report) + "<h3 style=\"margin-top:22px\">Physics audit</h3>" + audit_table(report));
+  return section(
+      "validity", "Validity and physics of the held-out cases",
+      "Where each case lies among the training cases, and what the fields say about mass and pressure. "
+      "EL3D's own averages "
+      "do not close their balances exactly either: compare the two rows.",
+      validity_table(report) + "<h3 style=\"margin-top:22px\">Physics audit</h3>" + audit_table(report));
 }
 
 }  // namespace
 
-std::string section(std::string_view id, std::string_view title, std::string_view lead, std::string_view body) {
-  return fmt::format("<section id=\"{}\"><h2>{}</h2><p class=\"lead\">{}</p>{}</section>", id, title, lead, body);
+std::string section(std::string_view id, std::string_view title, std::string_view lead,
+                    std::string_view body) {
+  return fmt::format("<section id=\"{}\"><h2>{}</h2><p class=\"lead\">{}</p>{}</section>", id, title, lead,
+                     body);
 }
 
 std::string html_page(const AccuracyReport& report, const PageExtras& extras) {
   check(report.figures.has_value(), "html_page: the report was made without figures");
   std::string page = fmt::format(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, "
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, "
       "initial-scale=1\"><meta name=\"generator\" content=\"{}\"><title>ELROM accuracy: {}</title><style>",
       escape(program_version()), escape(report.study.name));
   page += page_style();
   page += "</style></head><body>" + navigation(extras) + "<main>" + opening(report);
-  page += section("table", "Scores by field", "Every method on the same split and the same cells. The dot marks the best in each row.",
+  page += section("table", "Scores by field",
+                  "Every method on the same split and the same cells. The dot marks the best in each row.",
                   score_tables(report));
   page += cut_section(report) + profile_section(report) + load_section(report) + budget_section(report);
-  page += coverage_section(report) + error_section(report) + submodel_table(report) + validity_section(report);
+  page +=
+      coverage_section(report) + error_section(report) + submodel_table(report) + validity_section(report);
   if (extras.learning_curve) page += learning_section(*extras.learning_curve);
   if (extras.cost) page += cost_section(*extras.cost);
   if (!extras.searches.empty()) page += search_section(extras.searches);
   page += provenance(report);
-  page += fmt::format("<footer>{} &middot; {}</footer></main><script>", escape(program_version()), escape(report.created));
+  page += fmt::format("<footer>{} &middot; {}</footer></main><script>", escape(program_version()),
+                      escape(report.created));
   page += page_script();
   return page + "</script></body></html>\n";
 }

@@ -19,13 +19,16 @@ std::string figure(const std::string& caption, const std::string& drawing) {
   return fmt::format("<figure><figcaption>{}</figcaption>{}</figure>", escape(caption), drawing);
 }
 
-std::string with_unit(const std::string& name, const std::string& unit) { return unit == "1" || unit.empty() ? name : name + " [" + unit + "]"; }
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit == "1" || unit.empty() ? name : name + " [" + unit + "]";
+}
 
 // Cases by rising load, for lines.
 std::vector<std::size_t> by_load(const AccuracyReport& report) {
   std::vector<std::size_t> order(report.cases.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return report.cases[a].load < report.cases[b].load; });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return report.cases[a].load < report.cases[b].load; });
   return order;
 }
 
@@ -46,7 +49,8 @@ std::string load_chart(const AccuracyReport& report) {
     for (const auto i : by_load(report)) errors[m].push_back(mean_case_nrmse(report, m, i));
   for (const auto& list : errors) everything.insert(everything.end(), list.begin(), list.end());
   everything.push_back(0);
-  svg::Chart chart({.width = 640, .height = 340}, svg::fit_axis("load [% of full load]", loads), svg::fit_axis("mean NRMSE over fields", everything), "Error against load");
+  svg::Chart chart({.width = 640, .height = 340}, svg::fit_axis("load [% of full load]", loads),
+                   svg::fit_axis("mean NRMSE over fields", everything), "Error against load");
   for (std::size_t m = report.methods.size(); m-- > 0;) {
     const auto name = method_label(report.methods[m].file.name);
     chart.line(loads, errors[m], series_class(report, m), name);
@@ -57,17 +61,21 @@ std::string load_chart(const AccuracyReport& report) {
 
 std::string load_table(const AccuracyReport& report) {
   std::string head = "<th>field</th>", body;
-  for (const auto i : by_load(report)) head += fmt::format("<th>{}<br>{:.0f} %</th>", escape(report.cases[i].name), 100 * report.cases[i].load);
+  for (const auto i : by_load(report))
+    head += fmt::format("<th>{}<br>{:.0f} %</th>", escape(report.cases[i].name), 100 * report.cases[i].load);
   for (const auto& field : report.fields) {
     body += fmt::format("<tr><th>{}</th>", escape(field_label(field.info.name)));
-    for (const auto i : by_load(report)) body += fmt::format("<td>{}</td>", score_text(field.methods[0].cases[i].nrmse()));
+    for (const auto i : by_load(report))
+      body += fmt::format("<td>{}</td>", score_text(field.methods[0].cases[i].nrmse()));
     body += "</tr>";
   }
-  return "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body + "</tbody></table></div>";
+  return "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
+         "</tbody></table></div>";
 }
 
 std::string coverage_chart(const AccuracyReport& report) {
-  svg::Chart chart({.width = 440, .height = 380}, {"promised [%]", 40, 100}, {"measured [%]", 40, 100}, "Promised against measured coverage");
+  svg::Chart chart({.width = 440, .height = 380}, {"promised [%]", 40, 100}, {"measured [%]", 40, 100},
+                   "Promised against measured coverage");
   const std::vector<double> ends{40, 100};
   chart.line(ends, ends, "rule", "measured = promised");
   std::vector<double> levels, means;
@@ -82,11 +90,14 @@ std::string coverage_chart(const AccuracyReport& report) {
       for (const double share : by_case) sum += share;
       measured.push_back(100 * sum / static_cast<double>(by_case.size()));
     }
-    if (measured.size() == levels.size()) chart.line(levels, measured, "s1 thin", field_label(field.info.name));
+    if (measured.size() == levels.size())
+      chart.line(levels, measured, "s1 thin", field_label(field.info.name));
   }
   chart.line(levels, means, "s0", "all fields");
   chart.points(levels, means, "s0", "all fields");
-  return chart.text() + "<ul class=\"legend\"><li><i class=\"s0\"></i>all fields</li><li><i class=\"s1\"></i>one field</li></ul>";
+  return chart.text() +
+         "<ul class=\"legend\"><li><i class=\"s0\"></i>all fields</li><li><i class=\"s1\"></i>one "
+         "field</li></ul>";
 }
 
 std::string coverage_table(const AccuracyReport& report) {
@@ -104,7 +115,8 @@ std::string coverage_table(const AccuracyReport& report) {
     }
     body += fmt::format("<td class=\"own\">{}</td></tr>", percent_text(sum));
   }
-  return "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body + "</tbody></table></div>";
+  return "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
+         "</tbody></table></div>";
 }
 
 std::string parity_chart(const FieldAccuracy& field, const ParityMap& map) {
@@ -128,7 +140,8 @@ std::string parity_chart(const FieldAccuracy& field, const ParityMap& map) {
 }
 
 // A histogram as a step line: share of cells per bin, in per cent.
-void step_line(svg::Chart& chart, const Histogram& histogram, double factor, const std::string& css_class, const std::string& name) {
+void step_line(svg::Chart& chart, const Histogram& histogram, double factor, const std::string& css_class,
+               const std::string& name) {
   std::vector<double> x, y;
   const double step = (histogram.high - histogram.low) / static_cast<double>(histogram.counts.size());
   const auto total = static_cast<double>(std::max<std::uint64_t>(1, histogram.total()));
@@ -140,19 +153,24 @@ void step_line(svg::Chart& chart, const Histogram& histogram, double factor, con
   chart.line(x, y, css_class, name);
 }
 
-std::string error_chart(const AccuracyReport& report, const FieldAccuracy& field, const FieldFigures& figures) {
+std::string error_chart(const AccuracyReport& report, const FieldAccuracy& field,
+                        const FieldFigures& figures) {
   const auto unit = shown_unit(field.info.name, field.info.unit);
   double most = 0;
   const auto best = report.best_peer(field);
   const auto shown = best ? std::vector<std::size_t>{0, *best} : std::vector<std::size_t>{0};
   for (const auto m : shown)
     for (const auto count : figures.errors[m].counts)
-      most = std::max(most, 100 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(1, figures.errors[m].total())));
+      most = std::max(most, 100 * static_cast<double>(count) /
+                                static_cast<double>(std::max<std::uint64_t>(1, figures.errors[m].total())));
   const auto& own = figures.errors.front();
-  svg::Chart chart({.width = 320, .height = 220, .left = 50}, {with_unit("predicted - EL3D", unit.symbol), own.low * unit.factor, own.high * unit.factor},
-                   {"cells [%]", 0, most > 0 ? 1.08 * most : 1}, "Errors of " + field.info.name);
+  svg::Chart chart(
+      {.width = 320, .height = 220, .left = 50},
+      {with_unit("predicted - EL3D", unit.symbol), own.low * unit.factor, own.high * unit.factor},
+      {"cells [%]", 0, most > 0 ? 1.08 * most : 1}, "Errors of " + field.info.name);
   for (auto m = shown.rbegin(); m != shown.rend(); ++m)
-    step_line(chart, figures.errors[*m], unit.factor, series_class(report, *m), method_label(report.methods[*m].file.name));
+    step_line(chart, figures.errors[*m], unit.factor, series_class(report, *m),
+              method_label(report.methods[*m].file.name));
   return chart.text();
 }
 
@@ -167,10 +185,12 @@ std::string profile_chart(const AccuracyReport& report, std::size_t f, std::size
   std::vector<std::vector<double>> series;
   std::vector<double> everything;
   for (const auto& profile : drawn.profiles[i_case]) series.push_back(scaled(profile));
-  for (std::size_t k = 0; k < std::min<std::size_t>(2, series.size()); ++k) everything.insert(everything.end(), series[k].begin(), series[k].end());
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, series.size()); ++k)
+    everything.insert(everything.end(), series[k].begin(), series[k].end());
   const auto x = svg::fit_axis(with_unit(field_label(field.info.name), unit.symbol), everything, 1.5);
   const auto& z = report.figures->heights;
-  svg::Chart chart({.width = 330, .height = 300, .left = 44}, x, {"z [m]", 0, z.back() + z.front()}, "Profile of " + field.info.name);
+  svg::Chart chart({.width = 330, .height = 300, .left = 44}, x, {"z [m]", 0, z.back() + z.front()},
+                   "Profile of " + field.info.name);
   if (!drawn.half_width.empty()) {
     std::vector<double> low, high;
     for (std::size_t p = 0; p < z.size(); ++p) {
@@ -180,7 +200,9 @@ std::string profile_chart(const AccuracyReport& report, std::size_t f, std::size
     chart.band(low, high, z, "s0", "90 % interval of a cell, mean over the plane");
   }
   for (std::size_t m = report.methods.size(); m-- > 1;)
-    if (!series[m + 1].empty()) chart.line(series[m + 1], z, series_class(report, m) + " thin", method_label(report.methods[m].file.name));
+    if (!series[m + 1].empty())
+      chart.line(series[m + 1], z, series_class(report, m) + " thin",
+                 method_label(report.methods[m].file.name));
   chart.line(series[0], z, "truth", "EL3D");
   chart.line(series[1], z, series_class(report, 0), "ELROM");
   return chart.text();
@@ -189,7 +211,9 @@ std::string profile_chart(const AccuracyReport& report, std::size_t f, std::size
 }  // namespace
 
 std::string series_class(const AccuracyReport& report, std::size_t method) {
-  static const std::map<std::string, int> fixed{{"nearest", 1}, {"linear", 2}, {"pod_rbf", 3}, {"pod_gp", 4}, {"pod_gp_per_mode", 5}, {"networks", 6}, {"pod_mlp", 7}};
+  static const std::map<std::string, int> fixed{{"nearest", 1}, {"linear", 2},          {"pod_rbf", 3},
+                                                {"pod_gp", 4},  {"pod_gp_per_mode", 5}, {"networks", 6},
+                                                {"pod_mlp", 7}};
   if (method == 0) return "s0";
   const auto found = fixed.find(report.methods[method].file.name);
   return found != fixed.end() ? fmt::format("s{}", found->second) : fmt::format("s{}", 8 + method % 2);
@@ -198,13 +222,18 @@ std::string series_class(const AccuracyReport& report, std::size_t method) {
 std::string method_legend(const AccuracyReport& report, bool with_truth) {
   std::string items = with_truth ? "<li><i class=\"truth\"></i>EL3D</li>" : "";
   for (std::size_t m = 0; m < report.methods.size(); ++m)
-    items += fmt::format("<li><i class=\"{}\"></i>{}</li>", series_class(report, m), escape(method_label(report.methods[m].file.name)));
+    items += fmt::format("<li><i class=\"{}\"></i>{}</li>", series_class(report, m),
+                         escape(method_label(report.methods[m].file.name)));
   return "<ul class=\"legend\">" + items + "</ul>";
 }
 
 std::string load_section(const AccuracyReport& report) {
-  return section("loads", "Error against load", "Each held-out case on its own. NRMSE of one case is taken against that case's own distance from the training mean.",
-                 "<div class=\"grid2\">" + figure("Mean over fields, by method", load_chart(report)) + "<figure><figcaption>ELROM, by field</figcaption>" + load_table(report) + "</figure></div>");
+  return section("loads", "Error against load",
+                 "Each held-out case on its own. NRMSE of one case is taken against that case's own distance "
+                 "from the training mean.",
+                 "<div class=\"grid2\">" + figure("Mean over fields, by method", load_chart(report)) +
+                     "<figure><figcaption>ELROM, by field</figcaption>" + load_table(report) +
+                     "</figure></div>");
 }
 
 std::string budget_section(const AccuracyReport& report) {
@@ -218,43 +247,63 @@ std::string budget_section(const AccuracyReport& report) {
                     fmt::format("{:.3f}", b.nrmse_squared())});
   }
   const std::string legend =
-      "<ul class=\"legend\"><li><i class=\"block noise\" style=\"background:var(--noise)\"></i>noise of the truth: longer averaging lowers it</li>"
-      "<li><i class=\"block\" style=\"background:var(--compression)\"></i>compression: outside every combination of the training cases; more cases lower it</li>"
-      "<li><i class=\"block\" style=\"background:var(--regression)\"></i>regression: the model's own</li></ul>";
-  return section("budget", "Where the error comes from",
-                 report.repeats.empty() ? "Parts of NRMSE&sup2;. Without repeated runs the noise of the truth is not known; it is inside the other two."
-                                        : "Parts of NRMSE&sup2;. The noise of the truth is measured by repeated runs of the same boundary conditions; no model can go below it.",
-                 svg::bars(rows, "share of the departure from the training mean (NRMSE squared)", "Error budget", 860) + legend);
+      "<ul class=\"legend\"><li><i class=\"block noise\" style=\"background:var(--noise)\"></i>noise of the "
+      "truth: longer averaging lowers it</li>"
+      "<li><i class=\"block\" style=\"background:var(--compression)\"></i>compression: outside every "
+      "combination of the training cases; more cases lower it</li>"
+      "<li><i class=\"block\" style=\"background:var(--regression)\"></i>regression: the model's "
+      "own</li></ul>";
+  return section(
+      "budget", "Where the error comes from",
+      report.repeats.empty() ? "Parts of NRMSE&sup2;. Without repeated runs the noise of the truth is not "
+                               "known; it is inside the other two."
+                             : "Parts of NRMSE&sup2;. The noise of the truth is measured by repeated runs of "
+                               "the same boundary conditions; no model can go below it.",
+      svg::bars(rows, "share of the departure from the training mean (NRMSE squared)", "Error budget", 860) +
+          legend);
 }
 
 std::string coverage_section(const AccuracyReport& report) {
   if (!std::isfinite(report.mean_coverage(2)))
-    return section("coverage", "Promised and measured coverage", "The bundle makes no promise: it holds no uncertainty.", "");
+    return section("coverage", "Promised and measured coverage",
+                   "The bundle makes no promise: it holds no uncertainty.", "");
   return section("coverage", "Promised and measured coverage",
-                 "Share of held-out cells that lie inside their prediction interval. Cells of one case err together, so a single case may well lie off the line.",
-                 "<div class=\"grid2\">" + figure("All held-out cases", coverage_chart(report)) + "<figure><figcaption>By field and load</figcaption>" + coverage_table(report) + "</figure></div>");
+                 "Share of held-out cells that lie inside their prediction interval. Cells of one case err "
+                 "together, so a single case may well lie off the line.",
+                 "<div class=\"grid2\">" + figure("All held-out cases", coverage_chart(report)) +
+                     "<figure><figcaption>By field and load</figcaption>" + coverage_table(report) +
+                     "</figure></div>");
 }
 
 std::string error_section(const AccuracyReport& report) {
   std::string figures;
   for (std::size_t f = 0; f < report.fields.size(); ++f)
-    figures += fmt::format("<figure><figcaption>{}</figcaption>{}{}</figure>", escape(field_label(report.fields[f].info.name)),
-                           parity_chart(report.fields[f], report.figures->fields[f].parity), error_chart(report, report.fields[f], report.figures->fields[f]));
+    figures += fmt::format("<figure><figcaption>{}</figcaption>{}{}</figure>",
+                           escape(field_label(report.fields[f].info.name)),
+                           parity_chart(report.fields[f], report.figures->fields[f].parity),
+                           error_chart(report, report.fields[f], report.figures->fields[f]));
   return section("errors", "Parity and distribution of errors",
-                 "All cells of all held-out cases: prediction against EL3D (darker: more cells, on a logarithmic scale), and the errors of ELROM beside the field's best simple peer.",
+                 "All cells of all held-out cases: prediction against EL3D (darker: more cells, on a "
+                 "logarithmic scale), and the errors of ELROM beside the field's best simple peer.",
                  method_legend(report, false) + "<div class=\"grid3\">" + figures + "</div>");
 }
 
 std::string profile_section(const AccuracyReport& report) {
   std::string options, groups;
   for (std::size_t i = 0; i < report.cases.size(); ++i) {
-    options += fmt::format("<option value=\"{}\">{} ({:.0f} % load)</option>", i, escape(report.cases[i].name), 100 * report.cases[i].load);
+    options += fmt::format("<option value=\"{}\">{} ({:.0f} % load)</option>", i,
+                           escape(report.cases[i].name), 100 * report.cases[i].load);
     std::string figures;
-    for (std::size_t f = 0; f < report.fields.size(); ++f) figures += figure(field_label(report.fields[f].info.name), profile_chart(report, f, i));
-    groups += fmt::format("<div class=\"grid3\" data-profile-case=\"{}\"{}>{}</div>", i, i == 0 ? "" : " hidden", figures);
+    for (std::size_t f = 0; f < report.fields.size(); ++f)
+      figures += figure(field_label(report.fields[f].info.name), profile_chart(report, f, i));
+    groups += fmt::format("<div class=\"grid3\" data-profile-case=\"{}\"{}>{}</div>", i,
+                          i == 0 ? "" : " hidden", figures);
   }
-  return section("profiles", "Axial profiles", "Volume-weighted mean of each plane over height. The band is the mean 90 % interval of the plane's cells, wider than that of their mean.",
-                 "<div class=\"controls\"><label>held-out case<select id=\"profile-case\">" + options + "</select></label></div>" + method_legend(report, true) + groups);
+  return section("profiles", "Axial profiles",
+                 "Volume-weighted mean of each plane over height. The band is the mean 90 % interval of the "
+                 "plane's cells, wider than that of their mean.",
+                 "<div class=\"controls\"><label>held-out case<select id=\"profile-case\">" + options +
+                     "</select></label></div>" + method_legend(report, true) + groups);
 }
 
 }  // namespace elrom::report

@@ -1,5 +1,5 @@
-// The viewer of vertical cuts. Values travel as 16-bit steps between each series' extremes, in base64: about 11 bytes a
-// cell and series less than as text, and finer than any screen shows.
+// The viewer of vertical cuts. Values travel as 16-bit steps between each series' extremes, in base64: about
+// 11 bytes a cell and series less than as text, and finer than any screen shows.
 
 #include <fmt/format.h>
 
@@ -38,7 +38,8 @@ Json pack(const std::vector<float>& values) {
   if (!(high > low)) high = low + std::max(1e-30, std::abs(low));
   std::vector<std::uint8_t> bytes;
   bytes.reserve(2 * values.size());
-  for (const double value : values) append_u16(bytes, std::isfinite(value) ? (value - low) / (high - low) * steps : 0);
+  for (const double value : values)
+    append_u16(bytes, std::isfinite(value) ? (value - low) / (high - low) * steps : 0);
   return {{"low", low}, {"high", high}, {"data", base64(bytes)}};
 }
 
@@ -53,7 +54,11 @@ Json pack_cut(const Cut& cut) {
   std::vector<std::uint8_t> bytes;
   for (const auto& quad : cut.corners)
     for (std::size_t k = 0; k < quad.size(); ++k) append_u16(bytes, (quad[k] - low[k % 2]) / step);
-  return {{"title", cut.title}, {"horizontal", cut.horizontal}, {"low", {low[0], low[1]}}, {"step", step}, {"corners", base64(bytes)}};
+  return {{"title", cut.title},
+          {"horizontal", cut.horizontal},
+          {"low", {low[0], low[1]}},
+          {"step", step},
+          {"corners", base64(bytes)}};
 }
 
 // Fields that span decades start on a logarithmic colour scale.
@@ -68,10 +73,14 @@ Json embedded(const AccuracyReport& report) {
   const auto& figures = *report.figures;
   Json root{{"sequential", to_hex(sequential_map())}, {"diverging", to_hex(diverging_map())}};
   for (const auto& cut : figures.cuts) root["cuts"].push_back(pack_cut(cut));
-  for (const auto m : figures.cut_methods) root["methods"].push_back(method_label(report.methods[m].file.name));
+  for (const auto m : figures.cut_methods)
+    root["methods"].push_back(method_label(report.methods[m].file.name));
   for (std::size_t f = 0; f < report.fields.size(); ++f) {
     const auto unit = shown_unit(report.fields[f].info.name, report.fields[f].info.unit);
-    Json field{{"name", report.fields[f].info.name}, {"unit", unit.symbol}, {"factor", unit.factor}, {"log", wants_log(figures.fields[f].cuts.front().front())}};
+    Json field{{"name", report.fields[f].info.name},
+               {"unit", unit.symbol},
+               {"factor", unit.factor},
+               {"log", wants_log(figures.fields[f].cuts.front().front())}};
     for (const auto& of_case : figures.fields[f].cuts) {
       Json series = Json::array();
       for (const auto& values : of_case) series.push_back(pack(values));
@@ -85,7 +94,8 @@ Json embedded(const AccuracyReport& report) {
 std::string options(const std::vector<std::string>& names, std::size_t selected) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
-    text += fmt::format("<option value=\"{}\"{}>{}</option>", i, i == selected ? " selected" : "", svg::escape(names[i]));
+    text += fmt::format("<option value=\"{}\"{}>{}</option>", i, i == selected ? " selected" : "",
+                        svg::escape(names[i]));
   return text;
 }
 
@@ -98,18 +108,26 @@ std::string cut_section(const AccuracyReport& report) {
     fields.push_back(field_label(report.fields[f].info.name));
     if (report.fields[f].info.name == "solid_volume_fraction") first = f;
   }
-  for (const auto& scored : report.cases) cases.push_back(fmt::format("{} ({:.0f} % load)", scored.name, 100 * scored.load));
-  for (const auto m : report.figures->cut_methods) methods.push_back(method_label(report.methods[m].file.name));
+  for (const auto& scored : report.cases)
+    cases.push_back(fmt::format("{} ({:.0f} % load)", scored.name, 100 * scored.load));
+  for (const auto m : report.figures->cut_methods)
+    methods.push_back(method_label(report.methods[m].file.name));
   const auto body = fmt::format(
-      "<div class=\"controls\"><label>field<select id=\"cut-field\">{}</select></label><label>held-out case<select id=\"cut-case\">{}</select></label>"
-      "<label>predicted by<select id=\"cut-method\">{}</select></label><label class=\"tick\"><input type=\"checkbox\" id=\"cut-log\">logarithmic colours</label></div>"
-      "<div class=\"slices\"><figure><h3>EL3D</h3><canvas></canvas></figure><figure><h3><span id=\"cut-method-name\">ELROM</span></h3><canvas></canvas></figure>"
-      "<figure><h3>predicted &minus; EL3D</h3><canvas></canvas></figure></div><p id=\"readout\">Point at a cell to read its values.</p>"
+      "<div class=\"controls\"><label>field<select id=\"cut-field\">{}</select></label><label>held-out "
+      "case<select id=\"cut-case\">{}</select></label>"
+      "<label>predicted by<select id=\"cut-method\">{}</select></label><label class=\"tick\"><input "
+      "type=\"checkbox\" id=\"cut-log\">logarithmic colours</label></div>"
+      "<div class=\"slices\"><figure><h3>EL3D</h3><canvas></canvas></figure><figure><h3><span "
+      "id=\"cut-method-name\">ELROM</span></h3><canvas></canvas></figure>"
+      "<figure><h3>predicted &minus; EL3D</h3><canvas></canvas></figure></div><p id=\"readout\">Point at a "
+      "cell to read its values.</p>"
       "<noscript><p>The cuts are drawn by a script inside this page; it is switched off.</p></noscript>"
       "<script type=\"application/json\" id=\"cut-data\">{}</script>",
       options(fields, first), options(cases, 0), options(methods, 0), embedded(report).dump());
   return section("cuts", "Vertical cuts: EL3D, prediction, difference",
-                 "Through the middle of the furnace, to scale. EL3D and prediction share one colour scale, set by EL3D's 0.5 to 99.5 % range.", body);
+                 "Through the middle of the furnace, to scale. EL3D and prediction share one colour scale, "
+                 "set by EL3D's 0.5 to 99.5 % range.",
+                 body);
 }
 
 }  // namespace elrom::report

@@ -21,19 +21,22 @@ std::string figure(const std::string& caption, const std::string& drawing) {
   return fmt::format("<figure><figcaption>{}</figcaption>{}</figure>", escape(caption), drawing);
 }
 
-std::string cost_chart(const CostReport& cost, const std::string& label, const std::function<double(const CostPoint&)>& time) {
+std::string cost_chart(const CostReport& cost, const std::string& label,
+                       const std::function<double(const CostPoint&)>& time) {
   std::vector<double> times, errors;
   for (const auto& point : cost.points) {
     times.push_back(time(point));
     errors.push_back(point.error);
   }
-  svg::Chart chart({.width = 540, .height = 340, .right = 110}, svg::fit_axis(label, times, 1.0), svg::fit_axis("mean NRMSE", errors), "Error against " + label);
+  svg::Chart chart({.width = 540, .height = 340, .right = 110}, svg::fit_axis(label, times, 1.0),
+                   svg::fit_axis("mean NRMSE", errors), "Error against " + label);
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!std::isfinite(times[i]) || !std::isfinite(errors[i])) continue;
     const auto& point = cost.points[i];
     chart.points(std::span(&times[i], 1), std::span(&errors[i], 1), point.front ? "s0" : "s1", point.name);
     const auto colon = point.name.rfind(": ");
-    chart.label(times[i], errors[i], method_label(colon == std::string::npos ? point.name : point.name.substr(colon + 2)));
+    chart.label(times[i], errors[i],
+                method_label(colon == std::string::npos ? point.name : point.name.substr(colon + 2)));
   }
   return chart.text();
 }
@@ -49,7 +52,8 @@ std::string history_chart(const study::TrialStore::Search& search) {
     best.push_back(std::min(best.empty() ? finished : best.back(), finished));
   }
   if (number.size() < 2) return "";
-  svg::Chart chart({.width = 330, .height = 230, .left = 60}, svg::fit_axis("trial", number), svg::fit_axis("validation MSE", value, 1.0), "History of " + search.name);
+  svg::Chart chart({.width = 330, .height = 230, .left = 60}, svg::fit_axis("trial", number),
+                   svg::fit_axis("validation MSE", value, 1.0), "History of " + search.name);
   chart.points(number, value, "s1", "trial");
   chart.line(number, best, "s0", "best so far");
   return figure(search.name, chart.text());
@@ -60,12 +64,13 @@ struct Dimension {
   double (*value)(const study::Hyperparameters&);
 };
 const std::vector<Dimension>& dimensions() {
-  static const std::vector<Dimension> all{{"learning rate", [](const study::Hyperparameters& h) { return std::log(h.learning_rate); }},
-                                          {"layers", [](const study::Hyperparameters& h) { return double(h.n_layers); }},
-                                          {"units", [](const study::Hyperparameters& h) { return std::log(double(h.n_units)); }},
-                                          {"batch size", [](const study::Hyperparameters& h) { return std::log(double(h.batch_size)); }},
-                                          {"weight decay", [](const study::Hyperparameters& h) { return h.weight_decay; }},
-                                          {"dropout", [](const study::Hyperparameters& h) { return h.dropout; }}};
+  static const std::vector<Dimension> all{
+      {"learning rate", [](const study::Hyperparameters& h) { return std::log(h.learning_rate); }},
+      {"layers", [](const study::Hyperparameters& h) { return double(h.n_layers); }},
+      {"units", [](const study::Hyperparameters& h) { return std::log(double(h.n_units)); }},
+      {"batch size", [](const study::Hyperparameters& h) { return std::log(double(h.batch_size)); }},
+      {"weight decay", [](const study::Hyperparameters& h) { return h.weight_decay; }},
+      {"dropout", [](const study::Hyperparameters& h) { return h.dropout; }}};
   return all;
 }
 
@@ -77,7 +82,8 @@ std::vector<double> ranks(const std::vector<double>& values) {
   for (std::size_t i = 0; i < order.size();) {
     std::size_t end = i + 1;
     while (end < order.size() && values[order[end]] == values[order[i]]) ++end;
-    for (std::size_t k = i; k < end; ++k) rank[order[k]] = 0.5 * static_cast<double>(i + end - 1);  // ties share their mean rank
+    for (std::size_t k = i; k < end; ++k)
+      rank[order[k]] = 0.5 * static_cast<double>(i + end - 1);  // ties share their mean rank
     i = end;
   }
   return rank;
@@ -85,7 +91,8 @@ std::vector<double> ranks(const std::vector<double>& values) {
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   const auto n = static_cast<double>(a.size());
-  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / n, mean_b = std::accumulate(b.begin(), b.end(), 0.0) / n;
+  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / n,
+               mean_b = std::accumulate(b.begin(), b.end(), 0.0) / n;
   double ab = 0, aa = 0, bb = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     ab += (a[i] - mean_a) * (b[i] - mean_b);
@@ -95,7 +102,8 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
-// Importance of a hyperparameter: absolute rank correlation (Spearman) with the error, averaged over the searches.
+// Importance of a hyperparameter: absolute rank correlation (Spearman) with the error, averaged over the
+// searches.
 std::string importance_chart(const std::vector<study::TrialStore::Search>& searches) {
   std::vector<svg::BarRow> rows;
   for (const auto& dimension : dimensions()) {
@@ -108,13 +116,16 @@ std::string importance_chart(const std::vector<study::TrialStore::Search>& searc
           x.push_back(dimension.value(trial.hyperparameters));
           y.push_back(trial.value);
         }
-      if (x.size() < 4 || *std::min_element(x.begin(), x.end()) == *std::max_element(x.begin(), x.end())) continue;
+      if (x.size() < 4 || *std::min_element(x.begin(), x.end()) == *std::max_element(x.begin(), x.end()))
+        continue;
       sum += std::abs(correlation(ranks(x), ranks(y)));
       ++n;
     }
     if (n > 0) rows.push_back({dimension.name, {{sum / n, "s0", dimension.name}}, score_text(sum / n, 2)});
   }
-  return rows.empty() ? "" : svg::bars(rows, "mean absolute rank correlation with the validation error", "Importance of hyperparameters", 640);
+  return rows.empty() ? ""
+                      : svg::bars(rows, "mean absolute rank correlation with the validation error",
+                                  "Importance of hyperparameters", 640);
 }
 
 }  // namespace
@@ -133,35 +144,57 @@ std::string learning_section(const LearningCurve& curve) {
     y.push_back(curve.fit.at(n));
   }
   reach.insert(reach.end(), y.begin(), y.end());
-  svg::Chart chart({.width = 640, .height = 340}, svg::fit_axis("training cases", x), svg::fit_axis("mean NRMSE over fields", reach), "Learning curve");
+  svg::Chart chart({.width = 640, .height = 340}, svg::fit_axis("training cases", x),
+                   svg::fit_axis("mean NRMSE over fields", reach), "Learning curve");
   chart.line(x, y, "rule", "fitted power law");
   for (std::size_t i = 0; i < cases.size(); ++i)
-    chart.whisker(cases[i], errors[i] - curve.points[i].error_std, errors[i] + curve.points[i].error_std, "s0");
+    chart.whisker(cases[i], errors[i] - curve.points[i].error_std, errors[i] + curve.points[i].error_std,
+                  "s0");
   chart.line(cases, errors, "s0", "measured");
   chart.points(cases, errors, "s0", "training cases, error");
   std::string body;
   for (const auto& [field, v2] : curve.v2.field_error) {
     const double v1 = curve.v1.field_error.at(field);
-    body += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{:+.1f} %</td></tr>", escape(field_label(field)), score_text(v1), score_text(v2), 100 * (v2 / v1 - 1));
+    body += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{:+.1f} %</td></tr>",
+                        escape(field_label(field)), score_text(v1), score_text(v2), 100 * (v2 / v1 - 1));
   }
-  body += fmt::format("<tr class=\"sum\"><th>mean over fields</th><td>{}</td><td>{}</td><td>{:+.1f} %</td></tr>", score_text(curve.v1.error_mean),
-                      score_text(curve.v2.error_mean), 100 * (curve.v2.error_mean / curve.v1.error_mean - 1));
-  const auto table = fmt::format("<figure><figcaption>The source's comparison: v1 (a third of the cases) and v2 (all)</figcaption><div class=\"scroll\"><table><thead><tr><th>field</th><th>v1, {} cases</th><th>v2, {} cases</th><th>change</th></tr></thead><tbody>{}</tbody></table></div></figure>",
-                                 curve.v1.cases, curve.v2.cases, body);
+  body +=
+      fmt::format("<tr class=\"sum\"><th>mean over fields</th><td>{}</td><td>{}</td><td>{:+.1f} %</td></tr>",
+                  score_text(curve.v1.error_mean), score_text(curve.v2.error_mean),
+                  100 * (curve.v2.error_mean / curve.v1.error_mean - 1));
+  const auto table = fmt::format(
+      "<figure><figcaption>The source's comparison: v1 (a third of the cases) and v2 (all)</figcaption><div "
+      "class=\"scroll\"><table><thead><tr><th>field</th><th>v1, {} cases</th><th>v2, {} "
+      "cases</th><th>change</th></tr></thead><tbody>{}</tbody></table></div></figure>",
+      curve.v1.cases, curve.v2.cases, body);
   return section("learning", "What more cases buy",
-                 fmt::format("{} fitted anew on nested subsets, scored on the same held-out cases. Twenty more cases are expected to lower the error by {}.", escape(method_label(curve.method)), percent_text(curve.gain_next_20)),
-                 "<div class=\"grid2\">" + figure("Error against the number of training cases", chart.text()) + table + "</div>");
+                 fmt::format("{} fitted anew on nested subsets, scored on the same held-out cases. Twenty "
+                             "more cases are expected to lower the error by {}.",
+                             escape(method_label(curve.method)), percent_text(curve.gain_next_20)),
+                 "<div class=\"grid2\">" +
+                     figure("Error against the number of training cases", chart.text()) + table + "</div>");
 }
 
 std::string cost_section(const CostReport& cost) {
   std::string body;
   for (const auto& point : cost.points)
-    body += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.1f} ms</td><td style=\"text-align:left\">{}</td></tr>", escape(point.name), score_text(point.error, 4),
-                        point.train_seconds ? base::duration(*point.train_seconds) : "not kept", point.predict_ms, point.front ? "on the front" : "");
-  return section("cost", "What accuracy costs in time", "Blue: no other is at least as good in error, training and prediction time, and better in one.",
-                 "<div class=\"grid2\">" + figure("Training", cost_chart(cost, "training [s]", [](const CostPoint& p) { return p.train_seconds.value_or(std::nan("")); })) +
-                     figure("Prediction", cost_chart(cost, "one prediction [ms]", [](const CostPoint& p) { return p.predict_ms; })) +
-                     "</div><div class=\"scroll\"><table><thead><tr><th>what</th><th>mean NRMSE</th><th>training</th><th>one prediction</th><th></th></tr></thead><tbody>" + body + "</tbody></table></div>");
+    body += fmt::format(
+        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.1f} ms</td><td style=\"text-align:left\">{}</td></tr>",
+        escape(point.name), score_text(point.error, 4),
+        point.train_seconds ? base::duration(*point.train_seconds) : "not kept", point.predict_ms,
+        point.front ? "on the front" : "");
+  return section(
+      "cost", "What accuracy costs in time",
+      "Blue: no other is at least as good in error, training and prediction time, and better in one.",
+      "<div class=\"grid2\">" +
+          figure("Training",
+                 cost_chart(cost, "training [s]",
+                            [](const CostPoint& p) { return p.train_seconds.value_or(std::nan("")); })) +
+          figure("Prediction",
+                 cost_chart(cost, "one prediction [ms]", [](const CostPoint& p) { return p.predict_ms; })) +
+          "</div><div class=\"scroll\"><table><thead><tr><th>what</th><th>mean "
+          "NRMSE</th><th>training</th><th>one prediction</th><th></th></tr></thead><tbody>" +
+          body + "</tbody></table></div>");
 }
 
 std::string search_section(const std::vector<study::TrialStore::Search>& searches) {
@@ -172,8 +205,11 @@ std::string search_section(const std::vector<study::TrialStore::Search>& searche
     n_trials += searches[i].trials.size();
     if (i < most_shown) charts += history_chart(searches[i]);
   }
-  return section("search", "Search for hyperparameters", fmt::format("{} trials in {} searches; the first {} are drawn.", n_trials, searches.size(), std::min(most_shown, searches.size())),
-                 importance_chart(searches) + "<div class=\"grid3\" style=\"margin-top:18px\">" + charts + "</div>");
+  return section(
+      "search", "Search for hyperparameters",
+      fmt::format("{} trials in {} searches; the first {} are drawn.", n_trials, searches.size(),
+                  std::min(most_shown, searches.size())),
+      importance_chart(searches) + "<div class=\"grid3\" style=\"margin-top:18px\">" + charts + "</div>");
 }
 
 }  // namespace elrom::report

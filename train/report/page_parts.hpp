@@ -12,7 +12,8 @@ namespace elrom::report {
 [[nodiscard]] std::string series_class(const AccuracyReport& report, std::size_t method);
 /// <ul> of line samples for methods, the truth first where asked.
 [[nodiscard]] std::string method_legend(const AccuracyReport& report, bool with_truth);
-[[nodiscard]] std::string section(std::string_view id, std::string_view title, std::string_view lead, std::string_view body);
+[[nodiscard]] std::string section(std::string_view id, std::string_view title, std::string_view lead,
+                                  std::string_view body);
 
 [[nodiscard]] std::string key_figures(const AccuracyReport& report);
 [[nodiscard]] std::string score_tables(const AccuracyReport& report);

@@ -26,7 +26,8 @@ Line fit_line(const std::vector<double>& basis, const std::vector<double>& error
   if (determinant > 0) line = {(sbb * se - sb * sbe) / determinant, (n * sbe - sb * se) / determinant};
   if (!(determinant > 0) || line.scale < 0) line = {se / n, 0};
   if (line.floor < 0) line = {0, sbe / sbb};
-  for (std::size_t i = 0; i < basis.size(); ++i) line.residual += std::pow(line.floor + line.scale * basis[i] - errors[i], 2);
+  for (std::size_t i = 0; i < basis.size(); ++i)
+    line.residual += std::pow(line.floor + line.scale * basis[i] - errors[i], 2);
   return line;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// What accuracy costs in time: error, training time and prediction time of every bundle of some studies, and which of them
-// no other beats in all three. With the studies of an ablation it is the ablation table: changes are against the first.
+// What accuracy costs in time: error, training time and prediction time of every bundle of some studies, and
+// which of them no other beats in all three. With the studies of an ablation it is the ablation table:
+// changes are against the first.
 
 #include <filesystem>
 #include <optional>
@@ -23,7 +24,7 @@ struct CostPoint {
 struct CostOptions {
   std::vector<std::filesystem::path> studies;
   std::optional<std::filesystem::path> store;
-  bool peers = true;   ///< the studies' peers too
+  bool peers = true;  ///< the studies' peers too
   int n_threads = 1;
 };
 

@@ -1,9 +1,10 @@
 #pragma once
-// What more cases buy: a method of the study fitted anew on nested subsets of its training cases, always scored on the
-// same held-out cases; and the source's comparison of v1 (a third of the cases) with v2 (all of them).
+// What more cases buy: a method of the study fitted anew on nested subsets of its training cases, always
+// scored on the same held-out cases; and the source's comparison of v1 (a third of the cases) with v2 (all of
+// them).
 //
-// Error: mean over fields of the pooled NRMSE, whose training mean is that of *all* training cases at every point, so that
-// points differ by the model alone.
+// Error: mean over fields of the pooled NRMSE, whose training mean is that of *all* training cases at every
+// point, so that points differ by the model alone.
 
 #include <cstdint>
 #include <filesystem>
@@ -20,18 +21,19 @@ namespace elrom::report {
 struct LearningCurveOptions {
   std::filesystem::path study;
   std::optional<std::filesystem::path> store;
-  std::string method;               ///< a peer's name; empty: the one that answers for most fields of the study, or the best peer
+  std::string
+      method;  ///< a peer's name; empty: the one that answers for most fields of the study, or the best peer
   std::vector<std::string> fields;  ///< empty: all of the study
-  int n_points = 5;                 ///< subset sizes, evenly spaced in the logarithm, from an eighth of the cases to all
-  int n_repeats = 3;                ///< nested draws
+  int n_points = 5;   ///< subset sizes, evenly spaced in the logarithm, from an eighth of the cases to all
+  int n_repeats = 3;  ///< nested draws
   std::uint64_t seed = 1;
   int n_threads = 1;
 };
 
 struct LearningPoint {
   std::size_t cases = 0;
-  double error_mean = 0, error_std = 0;         ///< over the draws
-  std::map<std::string, double> field_error;    ///< mean over the draws, by field
+  double error_mean = 0, error_std = 0;       ///< over the draws
+  std::map<std::string, double> field_error;  ///< mean over the draws, by field
 };
 
 /// error(n) = floor + scale * n^-rate, by least squares.
@@ -46,13 +48,14 @@ struct LearningCurve {
   std::string study, method;
   std::vector<LearningPoint> points;  ///< by rising number of cases
   PowerLaw fit;
-  double gain_next_20 = 0;            ///< expected fall of the error, as a share, with 20 more cases
-  LearningPoint v1;                   ///< a third of the cases
-  LearningPoint v2;                   ///< all of them
+  double gain_next_20 = 0;  ///< expected fall of the error, as a share, with 20 more cases
+  LearningPoint v1;         ///< a third of the cases
+  LearningPoint v2;         ///< all of them
 };
 
 /// @throws InputError, UsageError, Interrupted
-[[nodiscard]] LearningCurve learning_curve(const LearningCurveOptions& options, Log& log, const std::stop_token& stop = {});
+[[nodiscard]] LearningCurve learning_curve(const LearningCurveOptions& options, Log& log,
+                                           const std::stop_token& stop = {});
 
 /// Kind "elrom-learning-curve" of data/FORMATS.md.
 [[nodiscard]] std::string to_json(const LearningCurve& curve);

@@ -1,0 +1,194 @@
+#include "elrom/report/learning_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/random.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/field/snapshot_store.hpp"
+#include "elrom/model/bundle.hpp"
+#include "elrom/report/metrics.hpp"
+#include "elrom/report/study_files.hpp"
+#include "elrom/study/cross_validation.hpp"
+#include "refit.hpp"
+
+namespace elrom::report {
+namespace {
+
+/// Cases of the study and of its held-out part, and the methods' view of them.
+struct Material {
+  field::SnapshotStore store;
+  std::vector<std::size_t> building, scored;
+  study::CaseSet cases;  //!< of `building`
+};
+
+Material gather(const StudyFiles& study) {
+  Material material{field::SnapshotStore::open(study.store), {}, {}, {}};
+  const auto row_of = [&](const std::string& name) {
+    const auto rows = material.store.find(name);
+    if (rows.size() != 1)
+      throw InputError({.what = "the store does not hold case '" + name + "' of the study's split",
+                        .where = study.store.string()});
+    return rows.front();
+  };
+  for (const auto& name : study.building) material.building.push_back(row_of(name));
+  for (const auto& name : study.held_out)
+    if (!base::matches(name, "rep*")) material.scored.push_back(row_of(name));
+  if (material.scored.empty() || material.building.size() < 4)
+    throw UsageError("a learning curve needs at least four training cases and one held-out case");
+  auto& cases = material.cases;
+  cases.mesh = material.store.mesh();
+  cases.schema = material.store.schema();
+  cases.inputs = material.store.inputs(material.building);
+  for (const auto row : material.building) {
+    cases.names.push_back(material.store.cases()[row].inputs.name);
+    cases.loads.push_back(material.store.cases()[row].inputs.load);
+  }
+  return material;
+}
+
+// Sizes evenly spaced in the logarithm, with a third of the cases (v1) and all of them (v2) among them.
+std::vector<std::size_t> subset_sizes(std::size_t n_cases, int n_points) {
+  const double most = static_cast<double>(n_cases), least = std::max(4.0, most / 8);
+  std::vector<std::size_t> sizes{std::max<std::size_t>(4, n_cases / 3), n_cases};
+  for (int i = 0; i < n_points; ++i)
+    sizes.push_back(static_cast<std::size_t>(std::lround(
+        least * std::pow(most / least, n_points > 1 ? static_cast<double>(i) / (n_points - 1) : 1.0))));
+  std::sort(sizes.begin(), sizes.end());
+  sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+  return sizes;
+}
+
+// Nested draws: the first n of one random order.
+std::vector<std::vector<std::size_t>> orders(std::size_t n_cases, int n_repeats, base::Seed seed) {
+  std::vector<std::vector<std::size_t>> result;
+  for (int i = 0; i < n_repeats; ++i) {
+    auto& order = result.emplace_back(n_cases);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    base::Random random(seed.derive("learning-curve").derive(static_cast<std::uint64_t>(i)));
+    random.shuffle(order);
+  }
+  return result;
+}
+
+double held_out_nrmse(const Material& material, const model::FieldModel& model, const MatrixF& truth,
+                      const TrainingStatistics& statistics) {
+  model::Workspace workspace;
+  const auto inputs = material.store.inputs(material.scored);
+  std::vector<float> prediction(statistics.cell_mean.size());
+  ErrorSums sums;
+  for (Eigen::Index i = 0; i < truth.rows(); ++i) {
+    study::predict_case(model, {inputs.row(i).data(), static_cast<std::size_t>(inputs.cols())},
+                        material.cases.mesh.n_planes, prediction, workspace);
+    sums += error_sums({truth.row(i).data(), prediction.size()}, prediction, statistics);
+  }
+  return sums.nrmse();
+}
+
+/// Errors of one field, (sizes, draws).
+MatrixD field_errors(const Material& material, const field::FieldInfo& info, const study::Method& method,
+                     const std::vector<std::size_t>& sizes,
+                     const std::vector<std::vector<std::size_t>>& draws, const study::FitContext& context) {
+  study::FieldData data{&material.cases, info, material.store.read(info.name, material.building)};
+  const auto truth = material.store.read(info.name, material.scored);
+  const auto statistics = training_statistics(data.values, material.cases.mesh.n_columns);
+  MatrixD errors(static_cast<Eigen::Index>(sizes.size()), static_cast<Eigen::Index>(draws.size()));
+  for (std::size_t s = 0; s < sizes.size(); ++s)
+    for (std::size_t d = 0; d < draws.size(); ++d) {
+      const auto i = static_cast<Eigen::Index>(s), j = static_cast<Eigen::Index>(d);
+      if (sizes[s] == material.building.size() && d > 0) {
+        errors(i, j) = errors(i, 0);  // all cases: every draw is the same
+        continue;
+      }
+      if (context.stop.stop_requested()) throw Interrupted("stopped before the learning curve was complete");
+      std::vector<std::size_t> rows(draws[d].begin(),
+                                    draws[d].begin() + static_cast<std::ptrdiff_t>(sizes[s]));
+      std::sort(rows.begin(), rows.end());
+      errors(i, j) = held_out_nrmse(material, *method.fit(data, rows, context), truth, statistics);
+    }
+  return errors;
+}
+
+std::vector<field::FieldInfo> chosen_fields(const field::SnapshotStore& store,
+                                            const model::BundleInfo& bundle,
+                                            const std::vector<std::string>& names) {
+  if (names.empty()) return bundle.fields;
+  std::vector<field::FieldInfo> fields;
+  std::vector<std::string> known;
+  for (const auto& info : store.fields()) known.push_back(info.name);
+  for (const auto& name : names) {
+    const auto found = std::find_if(store.fields().begin(), store.fields().end(),
+                                    [&](const auto& f) { return f.name == name; });
+    if (found == store.fields().end())
+      throw UsageError(
+          {.what = "no field '" + name + "' in the store", .advice = base::name_advice(name, known)});
+    fields.push_back(*found);
+  }
+  return fields;
+}
+
+// Fields down, one (sizes, draws) table each, to points with mean and scatter over draws.
+std::vector<LearningPoint> points_of(const std::vector<std::size_t>& sizes,
+                                     const std::map<std::string, MatrixD>& errors) {
+  std::vector<LearningPoint> points;
+  for (std::size_t s = 0; s < sizes.size(); ++s) {
+    LearningPoint point{.cases = sizes[s]};
+    const auto row = static_cast<Eigen::Index>(s);
+    Eigen::RowVectorXd over_fields = Eigen::RowVectorXd::Zero(errors.begin()->second.cols());
+    for (const auto& [field, table] : errors) {
+      point.field_error[field] = table.row(row).mean();
+      over_fields += table.row(row) / static_cast<double>(errors.size());
+    }
+    point.error_mean = over_fields.mean();
+    const auto n = over_fields.size();
+    if (n > 1)
+      point.error_std =
+          std::sqrt((over_fields.array() - point.error_mean).square().sum() / static_cast<double>(n - 1));
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+}  // namespace
+
+LearningCurve learning_curve(const LearningCurveOptions& options, Log& log, const std::stop_token& stop) {
+  const auto study = open_study(options.study, options.store);
+  auto material = gather(study);
+  const model::BundleReader bundle(study.bundles.front().path);
+  const auto fields = chosen_fields(material.store, bundle.info(), options.fields);
+  LearningCurve curve{.study = study.name,
+                      .method = options.method.empty() ? method_of(bundle) : options.method};
+  const auto method = make_method(curve.method, study, material.cases);
+  const auto sizes = subset_sizes(material.building.size(), options.n_points);
+  const auto draws =
+      orders(material.building.size(), std::max(1, options.n_repeats), base::Seed(options.seed));
+  const study::FitContext context{
+      .seed = base::Seed(options.seed), .n_threads = options.n_threads, .log = &silent_log(), .stop = stop};
+  std::map<std::string, MatrixD> errors;
+  for (const auto& info : fields) {
+    log.progress({.task = "learning curve",
+                  .done = static_cast<std::int64_t>(errors.size()),
+                  .total = static_cast<std::int64_t>(fields.size()),
+                  .unit = "fields"});
+    errors[info.name] = field_errors(material, info, *method, sizes, draws, context);
+  }
+  log.progress({.task = "learning curve",
+                .done = static_cast<std::int64_t>(fields.size()),
+                .total = static_cast<std::int64_t>(fields.size()),
+                .unit = "fields"});
+  curve.points = points_of(sizes, errors);
+  std::vector<double> n, e;
+  for (const auto& point : curve.points) {
+    n.push_back(static_cast<double>(point.cases));
+    e.push_back(point.error_mean);
+    if (point.cases == std::max<std::size_t>(4, material.building.size() / 3)) curve.v1 = point;
+  }
+  curve.v2 = curve.points.back();
+  curve.fit = fit_power_law(n, e);
+  curve.gain_next_20 = 1 - curve.fit.at(n.back() + 20) / curve.fit.at(n.back());
+  return curve;
+}
+
+}  // namespace elrom::report
