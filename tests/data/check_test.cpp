@@ -187,7 +187,8 @@ TEST(Check, ReportIsJsonWithEveryFinding) {
 
   const auto text = to_json(checker, checker.findings());
 
-  EXPECT_THAT(text, AllOf(HasSubstr("\"kind\": \"elrom-check\""), HasSubstr("\"train_000\""),
+  EXPECT_THAT(text, AllOf(HasSubstr("\"kind\": \"elrom-check\""),
+                          HasSubstr("\"" + shipped()[0].record.inputs.name + "\""),
                           HasSubstr("\"case\": \"b.h5\""), HasSubstr("\"wrong\": 1")));
 }
 
