@@ -5,14 +5,17 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/model/coefficient_models.hpp"
+#include "elrom/model/smoother_coefficients.hpp"
 #include "model_parts.hpp"
 
 namespace elrom::model {
 
 // A new kind: add its line to the table.
 std::span<const CoefficientKind> coefficient_kinds() {
-  static const std::vector<CoefficientKind> kinds{
-      {"linear", LinearCoefficients::load}, {"gp", GpCoefficients::load}, {"rbf", RbfCoefficients::load}};
+  static const std::vector<CoefficientKind> kinds{{"linear", LinearCoefficients::load},
+                                                  {"gp", GpCoefficients::load},
+                                                  {"rbf", RbfCoefficients::load},
+                                                  {"smoother", SmootherCoefficients::load}};
   return kinds;
 }
 

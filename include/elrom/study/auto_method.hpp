@@ -1,0 +1,51 @@
+#pragma once
+// Method "auto": per field, the blend of candidates that predicts cases best that it has not seen, found by
+// load-grouped cross-validation on training cases only.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "elrom/study/method.hpp"
+
+namespace elrom::study {
+
+struct AutoOptions {
+  std::size_t n_folds = 8;
+  /// A blend must be better than its best member by this share of the member's error, or the member alone is
+  /// taken: weights learned from few cases are noisy, and a single model predicts faster.
+  double least_gain = 0.01;
+};
+
+struct CandidateScore {
+  std::string name;
+  double nrmse = 0;   ///< cross-validated, against the mean of the cases; NaN: failed
+  double weight = 0;  ///< in the final model
+  std::string failure = {};
+};
+
+struct AutoFit {
+  std::unique_ptr<model::FieldModel> model;  ///< fitted on all the cases
+  std::vector<CandidateScore> candidates;    ///< in the order given
+  double nrmse = 0;                          ///< cross-validated, of the final model
+  MatrixF
+      residuals;  //!< cross-validated truth minus prediction of the final model, SI, (cases.size(), n_cells)
+};
+
+/// A candidate that throws NumericalError loses and is told to the log; when all do, the first error is
+/// thrown.
+/// @param cases rows to learn from; at least two
+[[nodiscard]] AutoFit fit_auto(const FieldData& data, std::span<const std::size_t> cases,
+                               std::span<const Method* const> candidates, const AutoOptions& options,
+                               const FitContext& context);
+
+/// Weights >= 0 with sum 1 that minimise the squared error of sum_i weight_i * prediction_i, from the
+/// candidates' Gram matrix of errors, G_ij = sum of error_i * error_j (n, n).
+[[nodiscard]] std::vector<double> blend_weights(const Eigen::MatrixXd& error_gram);
+
+/// Square root of the sum of squared errors over that of the rows' deviations from their mean.
+[[nodiscard]] double cross_validated_nrmse(const FieldData& data, std::span<const std::size_t> cases,
+                                           const MatrixF& residuals);
+
+}  // namespace elrom::study
