@@ -11,6 +11,7 @@ using Work = std::function<int()>;
 
 // Each adds its subcommand to the program; `chosen` is set to its work when the user calls it.
 void add_import(CLI::App& program, Work& chosen);
+void add_mesh(CLI::App& program, Work& chosen);
 void add_inspect(CLI::App& program, Work& chosen);
 void add_check(CLI::App& program, Work& chosen);
 void add_generate(CLI::App& program, Work& chosen);

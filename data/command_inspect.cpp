@@ -1,0 +1,54 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "elrom/io/hdf5.hpp"
+#include "store_summary.hpp"
+
+namespace elrom::ingest {
+
+namespace {
+
+nlohmann::ordered_json describe(const std::filesystem::path& path) {
+  const auto ending = path.extension();
+  if (ending == ".h5" || ending == ".hdf5" || ending == ".hdf") {
+    std::string kind;
+    {
+      const auto file = io::Hdf5File::open(path);
+      if (file.has_attribute("kind")) kind = file.text("kind");
+    }
+    if (kind == "elrom-snapshots") return describe_store(field::SnapshotStore::open(path));
+    if (kind == "elrom-mesh") return describe_mesh(field::read_mesh(path));
+    if (!kind.empty())
+      throw InputError({.what = "nothing to inspect",
+                        .where = path.string(),
+                        .found = kind,
+                        .expected = "a store, a mesh or a case"});
+  }
+  return describe_case(read_case(path));
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& program, Work& chosen) {
+  struct Options {
+    std::filesystem::path path;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  auto* command = program.add_subcommand("inspect",
+                                         "Say what is in a snapshot store, a reduced mesh or a CFD result: "
+                                         "cases, loads, inputs, fields, units.");
+  command->add_option("FILE", options->path, "Store, mesh or case")->required()->type_name("FILE");
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &chosen] {
+    chosen = [options] {
+      const auto description = describe(options->path);
+      fmt::print("{}", options->json ? description.dump(2) + "\n" : in_words(description));
+      return 0;
+    };
+  });
+}
+
+}  // namespace elrom::ingest

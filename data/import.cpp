@@ -1,0 +1,182 @@
+#include "elrom/ingest/import.hpp"
+
+#include <algorithm>
+
+#include "conform.hpp"
+#include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/ingest/resample.hpp"
+
+namespace elrom::ingest {
+
+namespace {
+
+std::string extent_text(const MatrixD& centre) {
+  std::vector<std::string> parts;
+  for (Eigen::Index d = 0; d < 3; ++d) {
+    parts.push_back(base::rounded(centre.col(d).minCoeff(), 3) + " to " +
+                    base::rounded(centre.col(d).maxCoeff(), 3));
+  }
+  return base::join(parts, ", ") + " m";
+}
+
+// A mesh in millimetres, or of another furnace, would resample without complaint.
+void expect_same_place(const CfdCase& one, const field::Mesh& mesh) {
+  constexpr double least_overlap = 0.5, most_size = 1.5;
+  for (Eigen::Index d = 0; d < 3; ++d) {
+    const double low = mesh.centre.col(d).minCoeff(), high = mesh.centre.col(d).maxCoeff();
+    const double from = one.centre.col(d).minCoeff(), to = one.centre.col(d).maxCoeff();
+    const double shared = std::min(high, to) - std::max(low, from);
+    const double size = high - low;
+    if (size <= 0 || to - from <= 0) continue;  // one layer of cells has no extent between centres
+    if (shared >= least_overlap * size && to - from <= most_size * size) continue;
+    throw InputError({.what = "the case does not lie on the reduced mesh",
+                      .where = one.record.source,
+                      .found = "cell centres x, y, z at " + extent_text(one.centre),
+                      .expected = extent_text(mesh.centre),
+                      .advice = "is it another furnace, or not in metres?"});
+  }
+}
+
+// Operators between one CFD mesh and the reduced mesh, kept while the files bring the same mesh.
+class Exchange {
+ public:
+  Exchange(const field::Mesh& mesh, int n_threads, const std::stop_token& stop)
+      : mesh_(mesh), n_threads_(n_threads), stop_(stop) {}
+
+  void use_mesh_of(const CfdCase& one) {
+    base::Sha256 hash;
+    hash.add(std::as_bytes(std::span(one.centre.data(), static_cast<std::size_t>(one.centre.size()))));
+    hash.add(std::as_bytes(std::span(one.volume)));
+    const auto digest = hash.hex();
+    if (digest == digest_) return;
+    expect_same_place(one, mesh_);
+    there_.emplace(one.centre, one.volume, mesh_.centre, n_threads_, stop_);
+    back_.emplace(mesh_.centre, mesh_.volume, one.centre, n_threads_, stop_);
+    digest_ = digest;
+  }
+  [[nodiscard]] const Resampler& there() const { return *there_; }
+  [[nodiscard]] const Resampler& back() const { return *back_; }
+
+ private:
+  const field::Mesh& mesh_;
+  int n_threads_;
+  std::stop_token stop_;
+  std::string digest_;
+  std::optional<Resampler> there_, back_;
+};
+
+std::vector<field::FieldInfo> fields_of_new_store(const ImportOptions& options, const CfdCase& first) {
+  if (options.fields.empty()) return {field::standard_fields().begin(), field::standard_fields().end()};
+  std::vector<std::string> names;
+  for (const auto& f : first.fields) names.push_back(f.name);
+  std::vector<field::FieldInfo> fields;
+  for (const auto& name : options.fields) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      throw InputError({.what = "missing field '" + name + "'",
+                        .where = first.record.source,
+                        .advice = base::name_advice(name, names)});
+    }
+    fields.push_back(first.fields[static_cast<std::size_t>(found - names.begin())]);
+  }
+  return fields;
+}
+
+class Import {
+ public:
+  Import(const ImportOptions& options, Log& log, const std::stop_token& stop)
+      : options_(options),
+        log_(log),
+        stop_(stop),
+        mesh_(mesh_of(options)),
+        exchange_(mesh_, options.n_threads, stop) {
+    if (!options.cases.empty()) table_ = read_cases_table(options.cases);
+    if (!std::filesystem::exists(options.store)) return;
+    const auto store = field::SnapshotStore::open(options.store);
+    schema_ = store.schema();
+    summary_.fields = store.fields();
+    summary_.n_cases = store.n_cases();
+    open_writer();
+  }
+
+  ImportSummary run() {
+    for (std::size_t i = 0; i < options_.files.size(); ++i) {
+      if (stop_.stop_requested()) throw Interrupted("import stopped; the store is as it was");
+      take(options_.files[i]);
+      log_.progress({.task = "import",
+                     .done = static_cast<std::int64_t>(i + 1),
+                     .total = static_cast<std::int64_t>(options_.files.size()),
+                     .unit = "cases"});
+    }
+    if (writer_ && summary_.n_added > 0) writer_->commit();
+    for (auto& error : summary_.mean_error) error /= static_cast<double>(summary_.n_added);
+    summary_.n_cases += summary_.n_added;
+    return summary_;
+  }
+
+ private:
+  static field::Mesh mesh_of(const ImportOptions& options) {
+    if (!options.mesh.empty()) return field::read_mesh(options.mesh);
+    if (std::filesystem::exists(options.store)) return field::SnapshotStore::open(options.store).mesh();
+    throw UsageError({.what = "a new store needs a reduced mesh",
+                      .where = options.store.string(),
+                      .advice = "give it by --mesh, or make one by 'elrom-data mesh'"});
+  }
+
+  void open_writer() {
+    writer_.emplace(options_.store, mesh_, schema_, summary_.fields);
+    summary_.mean_error.assign(summary_.fields.size(), 0);
+    summary_.largest_error.assign(summary_.fields.size(), 0);
+  }
+
+  void take(const std::filesystem::path& file) {
+    auto one = read_case(file);
+    if (table_) complete_inputs(one, *table_);
+    if (options_.accept && !options_.accept(one)) return;
+    if (!writer_) {
+      schema_ = one.schema;
+      summary_.fields = fields_of_new_store(options_, one);
+      (void)conform_fields(one, summary_.fields);  // a first case that lacks a field begins no file
+      open_writer();
+    }
+    writer_->add(resample(one));
+    ++summary_.n_added;
+  }
+
+  field::Snapshot resample(const CfdCase& one) {
+    field::Snapshot snapshot{.record = one.record};
+    snapshot.record.inputs.values = conform_inputs(one, schema_);
+    const auto values = conform_fields(one, summary_.fields);
+    exchange_.use_mesh_of(one);
+    snapshot.fields = exchange_.there().apply(values);
+    snapshot.record.resampling_error = round_trip_error(values, exchange_.back().apply(snapshot.fields));
+    for (std::size_t f = 0; f < summary_.fields.size(); ++f) {
+      const double error = snapshot.record.resampling_error[f];
+      summary_.mean_error[f] += error;
+      summary_.largest_error[f] = std::max(summary_.largest_error[f], error);
+    }
+    summary_.n_outside = exchange_.there().n_outside();
+    summary_.n_cells = exchange_.there().n_target();
+    return snapshot;
+  }
+
+  const ImportOptions& options_;
+  Log& log_;
+  std::stop_token stop_;
+  field::Mesh mesh_;
+  Exchange exchange_;
+  std::optional<CasesTable> table_;
+  field::InputSchema schema_;
+  std::optional<field::SnapshotWriter> writer_;
+  ImportSummary summary_;
+};
+
+}  // namespace
+
+ImportSummary import_cases(const ImportOptions& options, Log& log, const std::stop_token& stop) {
+  return Import(options, log, stop).run();
+}
+
+}  // namespace elrom::ingest

@@ -1,0 +1,23 @@
+#pragma once
+// What is in a store, a mesh or a case, for `elrom-data inspect`: numbers in the user's units, as text and as
+// JSON.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "elrom/field/mesh.hpp"
+#include "elrom/field/snapshot_store.hpp"
+#include "elrom/ingest/cfd_case.hpp"
+
+namespace elrom::ingest {
+
+/// Keys: kind, n_cases, load {min, max}, mesh, inputs [{name, unit, min, max, mean}], fields [{name, unit,
+/// min, mean, max}], cases [{name, load, source ...}], digest.
+[[nodiscard]] nlohmann::ordered_json describe_store(const field::SnapshotStore& store);
+[[nodiscard]] nlohmann::ordered_json describe_mesh(const field::Mesh& mesh);
+[[nodiscard]] nlohmann::ordered_json describe_case(const CfdCase& one);
+
+/// The same in words, for a terminal.
+[[nodiscard]] std::string in_words(const nlohmann::ordered_json& description);
+
+}  // namespace elrom::ingest
