@@ -38,17 +38,20 @@ void check_cover(const BandedNetworks::Parts& parts) {
   for (const auto& submodel : parts.submodels)
     for (std::size_t j = 0; j < submodel.columns.size(); ++j) {
       const auto column = submodel.columns[j];
-      require(column >= 0 && static_cast<std::size_t>(column) < parts.n_columns, "submodel " + submodel.name,
-              "column " + std::to_string(column), "0 to " + std::to_string(parts.n_columns - 1));
+      if (column < 0 || static_cast<std::size_t>(column) >= parts.n_columns)
+        require(false, "submodel " + submodel.name, "column " + std::to_string(column),
+                "0 to " + std::to_string(parts.n_columns - 1));
       for (std::size_t plane = 0; plane < parts.planes.n_planes; ++plane)
         answers[plane * parts.n_columns + static_cast<std::size_t>(column)] +=
             submodel.answers(plane, j) ? 1 : 0;
     }
-  for (std::size_t cell = 0; cell < answers.size(); ++cell)
-    require(answers[cell] == 1,
-            "plane " + std::to_string(cell / parts.n_columns) + ", column " +
-                std::to_string(cell % parts.n_columns),
-            std::to_string(answers[cell]) + " submodels", "one");
+  const auto wrong = std::find_if(answers.begin(), answers.end(), [](int n) { return n != 1; });
+  if (wrong == answers.end()) return;
+  const auto cell = static_cast<std::size_t>(wrong - answers.begin());
+  require(
+      false,
+      "plane " + std::to_string(cell / parts.n_columns) + ", column " + std::to_string(cell % parts.n_columns),
+      std::to_string(*wrong) + " submodels", "one");
 }
 
 }  // namespace

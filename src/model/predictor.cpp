@@ -1,6 +1,7 @@
 #include "elrom/model/predictor.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,6 +12,8 @@
 
 namespace elrom::model {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// Planes are shared out among threads in multiples of this: the models' kernels work on whole vectors of
 /// planes.
@@ -109,15 +112,16 @@ struct Predictor::Impl {
   std::vector<std::unique_ptr<Uncertainty>> uncertainty;
   std::vector<float> quantiles;  //!< of the asked level, (n_fields)
   std::vector<Unit> serial_units;
+  LoadTimes times;
 
-  Impl(const std::filesystem::path& path, Selection wanted);
+  Impl(BundleReader reader, Selection wanted);
   void load(std::size_t i_field);
   void compute(const Unit& unit, std::span<const double> inputs, std::span<float> values,
                std::span<float> half_width, Workspace& workspace) const;
 };
 
-Predictor::Impl::Impl(const std::filesystem::path& path, Selection wanted)
-    : bundle(path),
+Predictor::Impl::Impl(BundleReader reader, Selection wanted)
+    : bundle(std::move(reader)),
       selection(std::move(wanted)),
       fields(chosen_fields(bundle, selection.fields)),
       planes(chosen_planes(bundle.n_planes(), selection.planes)),
@@ -125,11 +129,14 @@ Predictor::Impl::Impl(const std::filesystem::path& path, Selection wanted)
       uncertainty(fields.size()),
       quantiles(fields.size(), 0.0F),
       serial_units(units_for(fields.size(), planes.size(), 1)) {
-  const bool with_uncertainty = selection.interval_level.has_value();
-  if (selection.verify) bundle.verify(fields, with_uncertainty, selection.n_threads);
+  const auto begin = Clock::now();
+  if (selection.verify) bundle.verify(fields, selection.interval_level.has_value(), selection.n_threads);
+  const auto verified = Clock::now();
   guard = bundle.guard(false);
   for (const auto& info : fields) bounds.emplace_back(info);
   base::parallel_for(fields.size(), selection.n_threads, [&](std::size_t i, int) { load(i); });
+  times = {std::chrono::duration<double>(verified - begin).count(),
+           std::chrono::duration<double>(Clock::now() - verified).count()};
 }
 
 void Predictor::Impl::load(std::size_t i_field) {
@@ -162,11 +169,14 @@ void Predictor::Impl::compute(const Unit& unit, std::span<const double> inputs, 
   for (float& value : width) value *= quantiles[unit.i_field];
 }
 
+Predictor::Predictor(BundleReader bundle, Selection selection)
+    : impl_(std::make_unique<Impl>(std::move(bundle), std::move(selection))) {}
 Predictor::Predictor(const std::filesystem::path& bundle, Selection selection)
-    : impl_(std::make_unique<Impl>(bundle, std::move(selection))) {}
+    : Predictor(BundleReader(bundle), std::move(selection)) {}
 Predictor::~Predictor() = default;
 Predictor::Predictor(Predictor&&) noexcept = default;
 
+const Predictor::LoadTimes& Predictor::load_times() const { return impl_->times; }
 const BundleReader& Predictor::bundle() const { return impl_->bundle; }
 const Guard& Predictor::guard() const { return impl_->guard; }
 const std::vector<field::FieldInfo>& Predictor::fields() const { return impl_->fields; }

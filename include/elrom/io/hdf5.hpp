@@ -132,6 +132,9 @@ class Hdf5Group : public Hdf5Object {
   Hdf5Dataset write_texts(const std::string& name, const std::vector<std::string>& values) const;
   /// A second name for an existing object of the same file; `target` is an absolute path.
   void hard_link(const std::string& target, const std::string& name) const;
+  /// A one-dimensional view of a dataset of the same file, without a copy (HDF5's virtual dataset): for
+  /// readers that want cells in one row where the dataset has several dimensions.
+  void flat_view(const Hdf5Dataset& target, const std::string& name) const;
   void remove(const std::string& name) const;
 
  protected:

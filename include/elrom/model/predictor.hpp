@@ -31,6 +31,7 @@ class Predictor {
  public:
   /// Loads just the models that `selection` names. @throws InputError, UsageError (unknown field or plane)
   explicit Predictor(const std::filesystem::path& bundle, Selection selection = {});
+  explicit Predictor(BundleReader bundle, Selection selection = {});
   ~Predictor();
   Predictor(Predictor&&) noexcept;
 
@@ -39,6 +40,12 @@ class Predictor {
     std::vector<double> held_inputs;
   };
 
+  /// How long loading took, in seconds.
+  struct LoadTimes {
+    double verify = 0;  ///< comparing digests, which also brings the bytes into memory
+    double build = 0;   ///< making models of them
+  };
+  [[nodiscard]] const LoadTimes& load_times() const;
   [[nodiscard]] const BundleReader& bundle() const;
   [[nodiscard]] const Guard& guard() const;
   [[nodiscard]] const std::vector<field::FieldInfo>& fields() const;  ///< selected, in the bundle's order

@@ -1,0 +1,122 @@
+#include "hdf_writer.hpp"
+
+#include <cmath>
+
+#include "elrom/base/text.hpp"
+#include "elrom/base/version.hpp"
+#include "elrom/io/hdf5.hpp"
+
+namespace elrom::predict {
+namespace {
+
+constexpr FormatVersion prediction_format{1, 0};
+
+/// A field's values: planes x columns, or, of a region, one cell after the other.
+io::Shape shape_of(const Run& run) {
+  if (run.average || !run.cells.whole_planes) return {run.n_values()};
+  return {run.cells.planes.size(), run.cells.n_columns};
+}
+
+void write_identity(const Run& run, const Prediction& prediction, const io::Hdf5Object& object) {
+  object.set_text("case", prediction.inputs->name);
+  object.set_text("bundle_digest", run.bundle_digest);
+  object.set_text("validity", model::name_of(prediction.assessment->verdict));
+}
+
+void write_provenance(const Run& run, const Prediction& prediction, const io::Hdf5Group& elrom) {
+  const auto& assessment = *prediction.assessment;
+  elrom.set_text("validity_reason", assessment.reason);
+  elrom.set_number("validity_distance", assessment.distance);
+  elrom.set_number("validity_p_value", assessment.p_value);
+  std::vector<std::string> nearest;
+  for (const auto& neighbour : assessment.nearest) nearest.push_back(neighbour.name);
+  if (!nearest.empty()) elrom.set_texts("nearest_cases", nearest);
+  elrom.set_text("mesh_digest", run.mesh_digest);
+  elrom.set_text("bundle_program", run.bundle_program);
+  elrom.set_text("method", run.method);
+  elrom.set_text("builds", run.best_build_only ? "best" : "mean");
+  if (run.level) elrom.set_number("interval_level", *run.level);
+  if (std::isfinite(prediction.inputs->load)) elrom.set_number("load", prediction.inputs->load);
+
+  const auto inputs = elrom.write<double>("boundary_conditions", prediction.inputs->values);
+  std::vector<std::string> units;
+  for (const auto& info : run.schema.inputs()) units.push_back(info.unit);
+  inputs.set_texts("names", run.schema.names());
+  inputs.set_texts("units", units);
+}
+
+void write_fields(const Run& run, const Prediction& prediction, const io::Hdf5Group& group,
+                  std::span<const float> values) {
+  for (std::size_t i = 0; i < run.fields.size(); ++i) {
+    const auto& info = run.fields[i];
+    group.write<float>(info.name, prediction.field(values, run, i), shape_of(run))
+        .set_text("unit", info.unit);
+  }
+}
+
+void write_mesh(const Run& run, const io::Hdf5Group& elrom) {
+  const auto mesh = elrom.create_group("mesh");
+  mesh.write<std::int32_t>("planes", run.cells.planes);
+  if (run.average) {
+    mesh.write<float>("height", run.average->heights()).set_text("unit", "m");
+    return;
+  }
+  auto shape = shape_of(run);
+  shape.push_back(3);
+  mesh.write<float>("centre", run.geometry.centre, shape).set_text("unit", "m");
+  if (!run.cells.whole_planes) mesh.write<std::int32_t>("cells", run.cells.cells);
+}
+
+/// CellData must be one value a cell: links where the datasets are, views without a copy where they are
+/// planes x columns.
+void show_fields(const Run& run, const io::Hdf5Group& elrom, const std::string& source,
+                 const std::string& suffix, const io::Hdf5Group& cell_data) {
+  for (const auto& info : run.fields) {
+    if (shape_of(run).size() == 1) {
+      cell_data.hard_link("/elrom/" + source + "/" + info.name, info.name + suffix);
+    } else {
+      cell_data.flat_view(elrom.dataset(source + "/" + info.name), info.name + suffix);
+    }
+  }
+}
+
+void write_vtk(const Run& run, const io::Hdf5Group& file, const io::Hdf5Group& elrom) {
+  const auto vtk = file.create_group("VTKHDF");
+  const std::int64_t version[] = {1, 0};
+  vtk.set_text("Type", "UnstructuredGrid");
+  vtk.set_integers("Version", version);
+  const auto& geometry = run.geometry;
+  const auto count = [&](const char* name, std::size_t n) {
+    const std::int64_t value[] = {static_cast<std::int64_t>(n)};
+    vtk.write<std::int64_t>(name, value);
+  };
+  count("NumberOfPoints", geometry.points.size() / 3);
+  count("NumberOfCells", run.cells.size());
+  count("NumberOfConnectivityIds", geometry.connectivity.size());
+  vtk.write<float>("Points", geometry.points, {geometry.points.size() / 3, 3});
+  vtk.write<std::int32_t>("Connectivity", geometry.connectivity);
+  vtk.write<std::int32_t>("Offsets", geometry.offsets);
+  vtk.write<std::uint8_t>("Types", geometry.types);
+  const auto cell_data = vtk.create_group("CellData");
+  show_fields(run, elrom, "fields", "", cell_data);
+  if (run.level) show_fields(run, elrom, "half_width", "_half_width", cell_data);
+}
+
+}  // namespace
+
+void write_hdf(const Run& run, const Prediction& prediction, const std::filesystem::path& path) {
+  auto file = io::Hdf5File::create(path);
+  io::write_kind(file, "elrom-prediction", prediction_format);
+  write_identity(run, prediction, file);
+  const auto elrom = file.create_group("elrom");
+  write_identity(run, prediction, elrom);
+  write_provenance(run, prediction, elrom);
+  const std::string averages = run.average ? "profiles" : "fields";
+  write_fields(run, prediction, elrom.create_group(averages), prediction.values);
+  if (run.level) write_fields(run, prediction, elrom.create_group("half_width"), prediction.half_width);
+  write_mesh(run, elrom);
+  if (!run.average) write_vtk(run, file, elrom);
+  file.close();
+}
+
+}  // namespace elrom::predict

@@ -1,0 +1,259 @@
+#include "run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <mutex>
+
+#include "case_list.hpp"
+#include "elrom/base/app.hpp"
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/parallel.hpp"
+#include "elrom/model/predictor.hpp"
+#include "hdf_writer.hpp"
+#include "report_lines.hpp"
+#include "text_writer.hpp"
+#include "timing.hpp"
+
+namespace elrom::predict {
+namespace {
+
+/// From this many cases on Ctrl-C is watched for; below, ending the process at once is clean enough (files
+/// appear whole).
+constexpr std::size_t long_table = 16;
+
+const char* extension_of(Format format) {
+  switch (format) {
+    case Format::hdf:
+      return ".hdf";
+    case Format::csv:
+      return ".csv";
+    case Format::txt:
+      return ".txt";
+    case Format::ip:
+      return ".ip";
+  }
+  return "";
+}
+
+void write_all(std::FILE* stream, const std::string& text, const std::string& where) {
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
+  if (!written) throw SystemError({.what = "cannot write", .where = where, .advice = "is the disk full?"});
+}
+
+void write_text_file(const std::filesystem::path& path, const std::string& text) {
+  std::FILE* stream = std::fopen(path.c_str(), "wb");
+  if (stream == nullptr) throw SystemError({.what = "cannot write", .where = path.string()});
+  try {
+    write_all(stream, text, path.string());
+  } catch (...) {
+    std::fclose(stream);
+    throw;
+  }
+  if (std::fclose(stream) != 0)
+    throw SystemError({.what = "cannot write", .where = path.string(), .advice = "is the disk full?"});
+}
+
+/// What one thread needs for one case at a time; reused, so that a long table runs in flat memory.
+struct Desk {
+  model::Predictor::Scratch scratch;
+  std::vector<float> values, half_width;         //!< as predicted
+  std::vector<float> chosen, chosen_half_width;  //!< after region and averages
+  std::string text;
+  double compute = 0, write = 0;
+};
+
+/// The parts of a run that live as long as it.
+class Session {
+ public:
+  explicit Session(const Arguments& arguments);
+  int predict_all();
+
+ private:
+  void prepare(const field::Mesh& mesh, Cells cells);
+  void predict_case(std::size_t i, Desk& desk, int n_threads);
+  [[nodiscard]] std::span<const float> choose(std::span<const float> predicted, std::vector<float>& chosen,
+                                              bool average) const;
+  void write(Format format, const Prediction& prediction, Desk& desk);
+  [[nodiscard]] std::filesystem::path target(Format format, const field::CaseInputs& inputs) const;
+
+  const Arguments& arguments_;
+  Stopwatch whole_, lap_;
+  Timing timing_;
+  double cached_ = 0;
+  int n_threads_;
+  std::vector<field::CaseInputs> cases_;
+  std::optional<model::Predictor> predictor_;
+  Run run_;
+  std::optional<ReportLines> lines_;
+  std::mutex hdf5_;  //!< the library is not thread-safe
+  std::atomic<std::size_t> n_outside_{0};
+};
+
+Session::Session(const Arguments& arguments)
+    : arguments_(arguments),
+      n_threads_(arguments.n_threads > 0 ? arguments.n_threads : base::available_threads()) {
+  if (arguments_.timing) cached_ = cached_share(arguments_.bundle);
+  lap_.lap();
+  model::BundleReader bundle(arguments_.bundle);
+  cases_ = case_list(arguments_, bundle.info().schema);
+  const auto planes = parse_planes(arguments_.planes, bundle.n_planes());
+  const auto box = arguments_.region.empty() ? std::nullopt : std::optional(parse_box(arguments_.region));
+  const auto mesh = bundle.mesh(arguments_.verify);
+  auto cells = choose_cells(mesh, planes, box);
+  timing_.open = lap_.lap();
+  model::Selection selection{.fields = arguments_.fields,
+                             .planes = cells.planes,
+                             .best_build_only = arguments_.best_build_only,
+                             .interval_level = arguments_.level,
+                             .verify = arguments_.verify,
+                             .n_threads = n_threads_};
+  predictor_.emplace(std::move(bundle), std::move(selection));
+  timing_.verify = predictor_->load_times().verify;
+  timing_.build = predictor_->load_times().build;
+  lap_.lap();
+  prepare(mesh, std::move(cells));
+  timing_.prepare = lap_.lap();
+}
+
+void Session::prepare(const field::Mesh& mesh, Cells cells) {
+  const auto& bundle = predictor_->bundle();
+  run_.fields = predictor_->fields();
+  run_.schema = bundle.info().schema;
+  run_.cells = std::move(cells);
+  run_.level = arguments_.level;
+  run_.bundle_digest = bundle.digest();
+  run_.mesh_digest = bundle.mesh_digest();
+  run_.bundle_program = bundle.file().text("program");
+  run_.method = bundle.info().method;
+  run_.best_build_only = arguments_.best_build_only;
+  if (arguments_.profile) {
+    run_.average.emplace(mesh, run_.cells);
+  } else {
+    run_.geometry = geometry_of(mesh, run_.cells);
+  }
+  if (!arguments_.to_standard_output()) std::filesystem::create_directories(arguments_.output);
+  lines_.emplace(cases_.size(), arguments_.to_standard_output() ? stderr : stdout);
+}
+
+std::filesystem::path Session::target(Format format, const field::CaseInputs& inputs) const {
+  return std::filesystem::path(arguments_.output) / (inputs.name + extension_of(format));
+}
+
+/// Predicted planes -> what is written: cells of the region, or averages over planes.
+std::span<const float> Session::choose(std::span<const float> predicted, std::vector<float>& chosen,
+                                       bool average) const {
+  const auto& sources = run_.cells.sources;
+  if (predicted.empty() || (sources.empty() && !average)) return predicted;
+  const std::size_t n_cells = run_.cells.size(), n_values = average ? run_.n_values() : n_cells;
+  const std::size_t n_predicted = predicted.size() / run_.fields.size();
+  chosen.resize(run_.fields.size() * n_values);
+  std::vector<float> gathered(sources.size());
+  for (std::size_t i = 0; i < run_.fields.size(); ++i) {
+    auto field = predicted.subspan(i * n_predicted, n_predicted);
+    for (std::size_t k = 0; k < sources.size(); ++k)
+      gathered[k] = field[static_cast<std::size_t>(sources[k])];
+    if (!sources.empty()) field = gathered;
+    const auto out = std::span(chosen).subspan(i * n_values, n_values);
+    if (average) {
+      run_.average->apply(field, out);
+    } else {
+      std::copy(field.begin(), field.end(), out.begin());
+    }
+  }
+  return chosen;
+}
+
+void Session::write(Format format, const Prediction& prediction, Desk& desk) {
+  desk.text.clear();
+  if (format == Format::csv) write_csv(run_, prediction, desk.text);
+  if (format == Format::txt) write_sfw3d(run_, prediction, desk.text);
+  if (format == Format::ip) write_fluent(run_, prediction, desk.text);
+  if (arguments_.to_standard_output()) {
+    write_all(stdout, desk.text, "standard output");
+    return;
+  }
+  base::AtomicFile file(target(format, *prediction.inputs), false);
+  if (format == Format::hdf) {
+    const std::scoped_lock lock(hdf5_);
+    write_hdf(run_, prediction, file.temporary());
+  } else {
+    write_text_file(file.temporary(), desk.text);
+  }
+  file.commit();
+}
+
+void Session::predict_case(std::size_t i, Desk& desk, int n_threads) {
+  Stopwatch lap;
+  const auto& inputs = cases_[i];
+  const auto assessment = predictor_->guard().assess(inputs.values);
+  std::string line =
+      fmt::format("{}: {}, {}", inputs.name, model::name_of(assessment.verdict), assessment.reason);
+  const bool outside = assessment.verdict == model::Verdict::outside;
+  if (outside) ++n_outside_;
+  if (outside && arguments_.strict) {
+    lines_->add(i, line + "; not written (--strict)");
+    return;
+  }
+  desk.values.resize(predictor_->size());
+  if (run_.level) desk.half_width.resize(predictor_->size());
+  predictor_->predict(inputs.values, desk.values, desk.half_width, desk.scratch, n_threads);
+  const Prediction prediction{
+      .inputs = &inputs,
+      .assessment = &assessment,
+      .values = choose(desk.values, desk.chosen, run_.average.has_value()),
+      .half_width = choose(desk.half_width, desk.chosen_half_width, run_.average.has_value())};
+  desk.compute += lap.lap();
+  for (const auto format : arguments_.formats) {
+    write(format, prediction, desk);
+    if (!arguments_.to_standard_output()) line += " -> " + target(format, inputs).string();
+  }
+  desk.write += lap.lap();
+  lines_->add(i, std::move(line));
+}
+
+int Session::predict_all() {
+  // One case: its fields are shared out. A table: its cases are, each on one thread.
+  const bool table = cases_.size() > 1;
+  std::vector<Desk> desks(table ? static_cast<std::size_t>(n_threads_) : 1);
+  if (table) {
+    const auto stop = cases_.size() >= long_table ? base::interrupt_token() : std::stop_token();
+    base::parallel_for(
+        cases_.size(), n_threads_,
+        [&](std::size_t i, int worker) { predict_case(i, desks[static_cast<std::size_t>(worker)], 1); },
+        stop);
+  } else {
+    predict_case(0, desks[0], n_threads_);
+  }
+  for (const auto& desk : desks) {
+    timing_.compute += desk.compute;
+    timing_.write += desk.write;
+  }
+  timing_.wall = whole_.lap();
+  if (arguments_.timing) {
+    fmt::print(stderr, "{}\nbundle {:.0f} % in the page cache before ({}), {}\n", timing_.text(cases_.size()),
+               100 * cached_, cached_ > 0.99 ? "warm" : "cold", page_faults());
+  }
+  if (n_outside_ > 0 && arguments_.strict) {
+    throw ValidityError(fmt::format("{} of {} cases outside the trained range were not written",
+                                    n_outside_.load(), cases_.size()));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int run(const Arguments& arguments) {
+  if (arguments.level && !(*arguments.level > 0 && *arguments.level < 1)) {
+    throw UsageError({.what = "--uncertainty",
+                      .found = fmt::format("{}", *arguments.level),
+                      .expected = "a level between 0 and 1"});
+  }
+  return Session(arguments).predict_all();
+}
+
+}  // namespace elrom::predict
