@@ -5,6 +5,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/model/coefficient_models.hpp"
+#include "elrom/model/mlp_coefficients.hpp"
 #include "elrom/model/smoother_coefficients.hpp"
 #include "model_parts.hpp"
 
@@ -15,7 +16,8 @@ std::span<const CoefficientKind> coefficient_kinds() {
   static const std::vector<CoefficientKind> kinds{{"linear", LinearCoefficients::load},
                                                   {"gp", GpCoefficients::load},
                                                   {"rbf", RbfCoefficients::load},
-                                                  {"smoother", SmootherCoefficients::load}};
+                                                  {"smoother", SmootherCoefficients::load},
+                                                  {"mlp", MlpCoefficients::load}};
   return kinds;
 }
 
