@@ -1,0 +1,25 @@
+#pragma once
+// Small data sets, each hard in its own way: what breaks statistics, scalers, Gaussian processes and
+// networks.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "elrom/study/method.hpp"
+
+namespace elrom::stability {
+
+struct HardData {
+  std::string name;         ///< "constant_columns"
+  std::string description;  ///< one line for the table
+  study::CaseSet cases;
+  std::vector<field::FieldInfo> fields;
+  std::vector<MatrixF> values;   //!< of each field, SI, (n_cases, n_cells)
+  bool must_be_refused = false;  ///< holds cells that are not finite: no store may take it
+};
+
+/// Every hard case that is made of data.
+[[nodiscard]] std::vector<HardData> all_hard_data();
+
+}  // namespace elrom::stability
