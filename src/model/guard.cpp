@@ -18,6 +18,7 @@ constexpr double edge_margin = 0.1;       // of an input's trained width: beyond
 constexpr double edge_p_value = 0.05;     // rarer than this among the training cases: edge
 constexpr double outside_distance = 1.5;  // times the loneliest training case's distance: outside
 constexpr double rounding = 1e-9;         // relative: unit conversions must not push a case out of range
+constexpr double farthest_difference = 1e150;
 constexpr double constant_scale = 1e-2;  // of its value: the unit of distance for an input that never changed
 
 struct Range {
@@ -50,7 +51,11 @@ std::vector<double> distances(const MatrixD& inputs, const Eigen::RowVectorXd& s
                               const Eigen::RowVectorXd& point) {
   std::vector<double> result(static_cast<std::size_t>(inputs.rows()));
   for (Eigen::Index i = 0; i < inputs.rows(); ++i) {
-    const auto difference = ((inputs.row(i) - point).array() / scales.array()).eval();
+    // Beyond farthest_difference squares overflow; such a point is outside by any measure.
+    const auto difference = ((inputs.row(i) - point).array() / scales.array())
+                                .max(-farthest_difference)
+                                .min(farthest_difference)
+                                .eval();
     result[static_cast<std::size_t>(i)] = std::sqrt(difference.square().mean());
   }
   return result;

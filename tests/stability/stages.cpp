@@ -202,7 +202,9 @@ std::vector<Outcome> send_through(const HardData& data, const fs::path& folder) 
   outcomes.push_back(attempt(data, "check", [&] { return check(data); }));
   if (data.must_be_refused) return outcomes;  // nothing behind the store ever sees it
   outcomes.push_back(attempt(data, "guard", [&] { return guard(data); }));
+  // Screening asks for cases to train, to stop by and to judge by; the split refuses fewer.
   for (const std::string method : {"fast", "networks"}) {
+    if (data.cases.n_cases() < 3) break;
     outcomes.push_back(attempt(data, "screen_" + method, [&] { return screen(data, method); }));
   }
   for (const auto& method : study::peer_names()) {
