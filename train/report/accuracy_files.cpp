@@ -32,7 +32,7 @@ Json method_on_field(const AccuracyReport& report, const FieldAccuracy& field, s
   if (!method.available) return node;
   node["kind"] = method.kind;
   node.update(scores(method.pooled));
-  node["nrmse_without_noise"] = number(field.nrmse_without_noise(m, report.cases.size()));
+  node["nrmse_without_noise"] = number(field.nrmse_without_noise(m));
   for (std::size_t i = 0; i < report.cases.size(); ++i) {
     Json of_case{{"case", report.cases[i].name}};
     of_case.update(scores(method.cases[i]));
@@ -67,7 +67,7 @@ Json field_node(const AccuracyReport& report, const FieldAccuracy& field) {
   for (std::size_t m = 0; m < report.methods.size(); ++m)
     node["methods"].push_back(method_on_field(report, field, m));
   if (const auto best = report.best_peer(field)) node["best_peer"] = report.methods[*best].file.name;
-  node["error_budget"] = {{"noise", field.noise ? number(field.budget.noise) : Json()},
+  node["error_budget"] = {{"noise", !field.noise.empty() ? number(field.budget.noise) : Json()},
                           {"compression", number(field.budget.compression)},
                           {"regression", number(field.budget.regression)}};
   node["noise_nrmse"] = number(field.noise_nrmse);

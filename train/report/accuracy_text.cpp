@@ -86,16 +86,20 @@ std::string coverage_line(const AccuracyReport& report) {
   return line.empty() ? "" : "  coverage promised -> measured: " + line + '\n';
 }
 
+// Fields where a simple peer is better: with figures while they are few, by name otherwise.
 std::string losses(const AccuracyReport& report) {
-  std::string text;
+  constexpr std::size_t most_with_figures = 2;
+  const std::size_t n_lost = report.fields.size() - report.fields_won();
+  std::vector<std::string> lost;
   for (const auto& field : report.fields) {
     const auto best = report.best_peer(field);
     if (!best || field.nrmse(0) <= field.nrmse(*best)) continue;
-    text += fmt::format("{}{} ({} {} against {})", text.empty() ? "" : ", ", field_label(field.info.name),
-                        method_label(report.methods[*best].file.name), score_text(field.nrmse(*best)),
-                        score_text(field.nrmse(0)));
+    lost.push_back(field_label(field.info.name));
+    if (n_lost <= most_with_figures)
+      lost.back() += fmt::format(" ({} {} against {})", method_label(report.methods[*best].file.name),
+                                 score_text(field.nrmse(*best)), score_text(field.nrmse(0)));
   }
-  return text;
+  return base::join(lost, ", ");
 }
 
 std::string validity_line(const AccuracyReport& report) {
@@ -151,13 +155,15 @@ std::string terminal_table(const AccuracyReport& report, bool colour) {
     double floor = 0;
     for (const auto& field : report.fields)
       floor += field.noise_nrmse.value_or(0) / static_cast<double>(report.fields.size());
-    text += fmt::format("  The truth's own noise (repeated runs) is {} of it: no model can go below that",
-                        score_text(floor)) +
-            (std::isfinite(report.gain_without_noise())
-                 ? fmt::format("; with it taken off, ELROM is {} {} the best peer.\n",
-                               percent_text(std::abs(report.gain_without_noise())),
-                               report.gain_without_noise() >= 0 ? "below" : "above")
-                 : ".\n");
+    text +=
+        fmt::format(
+            "  The truth's own noise (repeated runs) is {} of it, about the least that any model can reach",
+            score_text(floor)) +
+        (std::isfinite(report.gain_without_noise())
+             ? fmt::format("; with it taken off, ELROM is {} {} the best peer.\n",
+                           percent_text(std::abs(report.gain_without_noise())),
+                           report.gain_without_noise() >= 0 ? "below" : "above")
+             : ".\n");
   }
   return text + coverage_line(report) + validity_line(report) + ink.faint("  * best in its row") + '\n';
 }

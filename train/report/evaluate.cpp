@@ -144,16 +144,20 @@ std::vector<ScoredCase> describe_cases(const field::SnapshotStore& store, const 
   return described;
 }
 
+// Fields whose truth departs from the mean by noise alone have no score with the noise taken off; they are
+// left out.
 void average_over_fields(AccuracyReport& report) {
   for (std::size_t m = 0; m < report.methods.size(); ++m) {
     double sum = 0, clean = 0;
+    int n_clean = 0;
     for (const auto& field : report.fields) {
       sum += field.nrmse(m);
-      clean += field.nrmse_without_noise(m, report.cases.size());
+      if (!std::isfinite(field.nrmse_without_noise(0))) continue;
+      clean += field.nrmse_without_noise(m);
+      ++n_clean;
     }
-    const auto n = static_cast<double>(report.fields.size());
-    report.methods[m].mean_nrmse = sum / n;
-    report.methods[m].mean_nrmse_without_noise = clean / n;
+    report.methods[m].mean_nrmse = sum / static_cast<double>(report.fields.size());
+    report.methods[m].mean_nrmse_without_noise = n_clean > 0 ? clean / n_clean : undefined;
   }
 }
 
@@ -203,9 +207,11 @@ double FieldAccuracy::nrmse(std::size_t method) const {
   return methods[method].available ? methods[method].pooled.nrmse() : undefined;
 }
 
-double FieldAccuracy::nrmse_without_noise(std::size_t method, std::size_t n_cases) const {
-  if (!noise || !methods[method].available) return undefined;
-  return report::nrmse_without_noise(methods[method].pooled, *noise * static_cast<double>(n_cases));
+double FieldAccuracy::noise_energy() const { return std::accumulate(noise.begin(), noise.end(), 0.0); }
+
+double FieldAccuracy::nrmse_without_noise(std::size_t method) const {
+  if (noise.empty() || !methods[method].available) return undefined;
+  return report::nrmse_without_noise(methods[method].pooled, noise_energy());
 }
 
 std::optional<std::size_t> AccuracyReport::best_peer() const {

@@ -77,12 +77,17 @@ std::vector<SubmodelScore> score_submodels(const model::BandedNetworks& networks
   return scores;
 }
 
-// Mean over the sets of repeated runs of the energy of one run's noise.
-std::optional<double> noise_of(const FieldTask& task) {
-  double sum = 0;
-  for (const auto& runs : task.cases.repeats) sum += noise_energy(task.store.read(task.info.name, runs));
-  if (task.cases.repeats.empty()) return std::nullopt;
-  return sum / static_cast<double>(task.cases.repeats.size());
+// Energy of the truth's noise in each scored case, from the sets of repeated runs.
+std::vector<double> noise_of(const FieldTask& task) {
+  if (task.cases.repeats.empty()) return {};
+  const auto load_of = [&](std::size_t row) { return task.store.cases()[row].inputs.load; };
+  std::vector<double> energies, measured_loads, loads;
+  for (const auto& runs : task.cases.repeats) {
+    energies.push_back(noise_energy(task.store.read(task.info.name, runs)));
+    measured_loads.push_back(load_of(runs.front()));
+  }
+  for (const std::size_t row : task.cases.scored) loads.push_back(load_of(row));
+  return noise_at_loads(measured_loads, energies, loads);
 }
 
 void budget_errors(const MatrixF& training, const MatrixF& truth, FieldAccuracy& result) {
@@ -93,12 +98,11 @@ void budget_errors(const MatrixF& training, const MatrixF& truth, FieldAccuracy&
     for (std::size_t r = 0; r < residuals.size(); ++r) residuals[r] += of_case[r];
   }
   const auto& sums = result.methods.front().pooled;
-  const auto n_cases = static_cast<double>(truth.rows());
   for (const double residual : residuals)
     result.compression_nrmse.push_back(std::sqrt(residual / residuals.front()));
-  result.budget = error_budget(sums, result.noise.value_or(0) * n_cases, residuals.back());
-  if (result.noise && sums.departure > 0)
-    result.noise_nrmse = std::sqrt(*result.noise * n_cases / sums.departure);
+  result.budget = error_budget(sums, result.noise_energy(), residuals.back());
+  if (!result.noise.empty() && sums.departure > 0)
+    result.noise_nrmse = std::sqrt(result.noise_energy() / sums.departure);
 }
 
 // Measured coverage at every level; the mean half-widths of planes at 90 % go to the drawings.

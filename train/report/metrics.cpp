@@ -122,6 +122,30 @@ double noise_energy(const MatrixF& runs) {
   return (values.rowwise() - mean).squaredNorm() / static_cast<double>(runs.rows() - 1);
 }
 
+std::vector<double> noise_at_loads(std::span<const double> measured_loads, std::span<const double> energies,
+                                   std::span<const double> loads) {
+  check(!energies.empty() && measured_loads.size() == energies.size(), "noise_at_loads: sizes differ");
+  const auto n = static_cast<double>(energies.size());
+  double mean = 0, x = 0, y = 0, xx = 0, xy = 0;
+  bool positive = true;
+  for (std::size_t i = 0; i < energies.size(); ++i) {
+    mean += energies[i] / n;
+    positive = positive && energies[i] > 0 && measured_loads[i] > 0;
+    const double u = std::log(measured_loads[i]), v = std::log(energies[i]);
+    x += u / n;
+    y += v / n;
+    xx += u * u / n;
+    xy += u * v / n;
+  }
+  constexpr double same_load = 1e-6;  // variance of the logarithm of loads that do not differ
+  const bool has_slope = positive && xx - x * x > same_load;
+  const double exponent = has_slope ? (xy - x * y) / (xx - x * x) : 0;
+  std::vector<double> result;
+  for (const double load : loads)
+    result.push_back(has_slope && load > 0 ? std::exp(y + exponent * (std::log(load) - x)) : mean);
+  return result;
+}
+
 double nrmse_without_noise(const ErrorSums& sums, double noise) {
   if (!(sums.departure > noise)) return undefined;
   return std::sqrt(std::max(0.0, sums.error - noise) / (sums.departure - noise));

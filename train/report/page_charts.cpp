@@ -69,7 +69,7 @@ std::string load_table(const AccuracyReport& report) {
       body += fmt::format("<td>{}</td>", score_text(field.methods[0].cases[i].nrmse()));
     body += "</tr>";
   }
-  return "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
+  return "<div class=\"scroll\"><table class=\"tight\"><thead><tr>" + head + "</tr></thead><tbody>" + body +
          "</tbody></table></div>";
 }
 
@@ -115,7 +115,7 @@ std::string coverage_table(const AccuracyReport& report) {
     }
     body += fmt::format("<td class=\"own\">{}</td></tr>", percent_text(sum));
   }
-  return "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
+  return "<div class=\"scroll\"><table class=\"tight\"><thead><tr>" + head + "</tr></thead><tbody>" + body +
          "</tbody></table></div>";
 }
 
@@ -187,10 +187,12 @@ std::string profile_chart(const AccuracyReport& report, std::size_t f, std::size
   for (const auto& profile : drawn.profiles[i_case]) series.push_back(scaled(profile));
   for (std::size_t k = 0; k < std::min<std::size_t>(2, series.size()); ++k)
     everything.insert(everything.end(), series[k].begin(), series[k].end());
-  const auto x = svg::fit_axis(with_unit(field_label(field.info.name), unit.symbol), everything, 1.5);
+  const auto quantity = with_unit(field_label(field.info.name), unit.symbol);
+  const auto of_truth = svg::fit_axis(quantity, series[0], 2.2);
+  const auto x = of_truth.scale == svg::Scale::log ? of_truth : svg::fit_axis(quantity, everything);
   const auto& z = report.figures->heights;
-  svg::Chart chart({.width = 330, .height = 300, .left = 44}, x, {"z [m]", 0, z.back() + z.front()},
-                   "Profile of " + field.info.name);
+  svg::Chart chart({.width = 330, .height = 300, .left = 44, .clip = true}, x,
+                   {"z [m]", 0, z.back() + z.front()}, "Profile of " + field.info.name);
   if (!drawn.half_width.empty()) {
     std::vector<double> low, high;
     for (std::size_t p = 0; p < z.size(); ++p) {

@@ -61,12 +61,16 @@ Json pack_cut(const Cut& cut) {
           {"corners", base64(bytes)}};
 }
 
-// Fields that span decades start on a logarithmic colour scale.
+// Fields that span decades start on a logarithmic colour scale; empty cells are no reason against it.
 bool wants_log(const std::vector<float>& truth) {
-  auto sorted = truth;
-  std::sort(sorted.begin(), sorted.end());
-  const double low = sorted[sorted.size() / 20], high = sorted[sorted.size() - 1 - sorted.size() / 200];
-  return low > 0 && high > 30 * low;
+  std::vector<float> positive;
+  for (const float value : truth) {
+    if (value < 0) return false;
+    if (value > 0) positive.push_back(value);
+  }
+  if (2 * positive.size() < truth.size()) return false;
+  std::sort(positive.begin(), positive.end());
+  return positive[positive.size() - 1 - positive.size() / 200] > 100 * positive[positive.size() / 20];
 }
 
 Json embedded(const AccuracyReport& report) {

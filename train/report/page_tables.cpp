@@ -37,8 +37,8 @@ std::vector<ScoreKind> score_kinds(const AccuracyReport& report) {
     kinds.push_back({"clean", "Noise taken off",
                      "NRMSE after the noise of the truth, measured by repeated runs, is taken off error and "
                      "reference alike.",
-                     false, true, [](const AccuracyReport& r, const FieldAccuracy& field, std::size_t m) {
-                       return field.nrmse_without_noise(m, r.cases.size());
+                     false, true, [](const AccuracyReport&, const FieldAccuracy& field, std::size_t m) {
+                       return field.nrmse_without_noise(m);
                      }});
   kinds.push_back(
       {"mse", "Standardised MSE",

@@ -114,11 +114,21 @@ std::string Chart::axes() const {
   return text;
 }
 
+// A nested <svg> cuts its content off without an identifier, which a clip path would need.
+std::string Chart::clipped_body() const {
+  if (!size_.clip) return body_;
+  const double width = size_.width - size_.left - size_.right,
+               height = size_.height - size_.top - size_.bottom;
+  return fmt::format(
+      "<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">{4}</svg>",
+      number(size_.left), number(size_.top), number(width), number(height), body_);
+}
+
 std::string Chart::text() const {
   return fmt::format(
       "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" style=\"max-width:{0}px\" role=\"img\" "
       "aria-label=\"{2}\">{3}{4}</svg>",
-      number(size_.width), number(size_.height), escape(title_), axes(), body_);
+      number(size_.width), number(size_.height), escape(title_), axes(), clipped_body());
 }
 
 std::string bars(const std::vector<BarRow>& rows, const std::string& axis_label, const std::string& title,

@@ -36,6 +36,7 @@ struct Axis {
 struct Size {
   double width = 640, height = 320;
   double left = 56, right = 12, top = 10, bottom = 42;
+  bool clip = false;  ///< cut drawings off at the frame
 };
 
 /// Draws in the order of the calls; values that are not finite break a line.
@@ -64,6 +65,7 @@ class Chart {
   [[nodiscard]] double px(double x) const;
   [[nodiscard]] double py(double y) const;
   [[nodiscard]] std::string axes() const;
+  [[nodiscard]] std::string clipped_body() const;
 
   Size size_;
   Axis x_, y_;

@@ -68,16 +68,17 @@ struct FieldAccuracy {
   field::FieldInfo info;
   std::vector<MethodField> methods;      //!< in the order of AccuracyReport::methods
   std::vector<SubmodelScore> submodels;  //!< of the study's own networks, wherever they are; empty: none
-  std::optional<double> noise;           ///< energy of the noise in one run; none without repeated runs
+  std::vector<double> noise;  ///< energy of the truth's noise in each scored case; empty: not known
   std::optional<double>
       noise_nrmse;     ///< its square root over the departure of the scored cases: the noise floor
   ErrorBudget budget;  ///< of the study's model
   std::vector<double>
       compression_nrmse;  //!< of the best fit with r modes of the training cases, (n_modes + 1)
   std::vector<std::vector<double>> coverage;  //!< measured share, (levels, n_cases); empty: no promise made
+  [[nodiscard]] double noise_energy() const;  ///< of all scored cases together; 0 when not known
   [[nodiscard]] double nrmse(std::size_t method) const;
   /// With the noise of the truth taken off; NaN without repeated runs.
-  [[nodiscard]] double nrmse_without_noise(std::size_t method, std::size_t n_cases) const;
+  [[nodiscard]] double nrmse_without_noise(std::size_t method) const;
 };
 
 struct MethodSummary {

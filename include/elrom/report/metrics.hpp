@@ -73,6 +73,15 @@ struct WorstCell {
 /// @param runs (n_runs >= 2, n_cells)
 [[nodiscard]] double noise_energy(const MatrixF& runs);
 
+/// Noise expected at other loads: a power law of the load through the measured ones (least squares in
+/// logarithms; the fluctuations of a furnace grow with its velocities), their mean where loads or energies do
+/// not allow one.
+/// @param measured_loads, energies of each set of repeated runs, at least one @return energy at each of
+/// `loads`
+[[nodiscard]] std::vector<double> noise_at_loads(std::span<const double> measured_loads,
+                                                 std::span<const double> energies,
+                                                 std::span<const double> loads);
+
 /// NRMSE with the noise of the truth taken off error and departure alike: sqrt((error - noise) / (departure -
 /// noise)); 0 where no more error than noise is left, NaN where the truth departs from the mean by noise
 /// alone.

@@ -113,7 +113,7 @@
       const list = corners[k], n = list.length / 8;
       for (let i = 0; i < n; ++i) {
         pen.fillStyle = pen.strokeStyle = colourOf(scale, values[offset + i]);
-        pen.lineWidth = 0.6;
+        pen.lineWidth = 1;
         pen.beginPath();
         for (let c = 0; c < 4; ++c) pen.lineTo(left + list[8 * i + 2 * c] * perMetre, floor - list[8 * i + 2 * c + 1] * perMetre);
         pen.closePath();

@@ -1,0 +1,173 @@
+// elrom-report: how good a study's model is, what more cases would buy, and what accuracy costs.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+
+#include "elrom/base/app.hpp"
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/parallel.hpp"
+#include "elrom/base/version.hpp"
+#include "elrom/report/accuracy.hpp"
+#include "elrom/report/cost.hpp"
+#include "elrom/report/learning_curve.hpp"
+#include "elrom/report/page.hpp"
+
+namespace {
+
+using namespace elrom;
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> studies, against, fields;
+  std::string store, json, csv, html, method;
+  int threads = 0, points = 5, repeats = 3;
+  std::uint64_t seed = 1;
+  bool small = false, v1_v2 = false, quiet = false, no_peers = false;
+
+  [[nodiscard]] int n_threads() const { return threads > 0 ? threads : base::available_threads(); }
+  [[nodiscard]] std::optional<fs::path> store_path() const {
+    return store.empty() ? std::nullopt : std::optional<fs::path>(store);
+  }
+};
+
+void write(const fs::path& path, const std::string& text, Log& log) {
+  base::write_text(path, text);
+  log.info("wrote " + path.string());
+}
+
+bool wants_colour() { return ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
+
+int run_accuracy(const Arguments& arguments, Log& log) {
+  const auto study = fs::path(arguments.studies.front());
+  report::AccuracyOptions options{
+      .study = study, .store = arguments.store_path(), .n_threads = arguments.n_threads()};
+  options.against.assign(arguments.against.begin(), arguments.against.end());
+  options.figures = !arguments.html.empty();
+  const auto accuracy = report::evaluate(options, log, base::interrupt_token());
+  fmt::print("{}", report::terminal_table(accuracy, wants_colour()));
+  if (!arguments.json.empty()) write(arguments.json, report::to_json(accuracy), log);
+  if (!arguments.csv.empty()) write(arguments.csv, report::to_csv(accuracy), log);
+  if (!arguments.html.empty())
+    write(arguments.html, report::html_page(accuracy, report::find_extras(accuracy.study)), log);
+  return 0;
+}
+
+int run_learning_curve(const Arguments& arguments, Log& log) {
+  const auto study = fs::path(arguments.studies.front());
+  report::LearningCurveOptions options{.study = study,
+                                       .store = arguments.store_path(),
+                                       .method = arguments.method,
+                                       .fields = arguments.fields,
+                                       .n_points = arguments.points,
+                                       .n_repeats = arguments.repeats,
+                                       .seed = arguments.seed,
+                                       .n_threads = arguments.n_threads()};
+  if (arguments.small) {
+    options.n_points = 3;
+    options.n_repeats = 1;
+  }
+  const auto curve = report::learning_curve(options, log, base::interrupt_token());
+  fmt::print("{}", arguments.v1_v2 ? report::v1_v2_table(curve) : report::terminal_table(curve));
+  write(arguments.json.empty() ? study / "learning-curve.json" : fs::path(arguments.json),
+        report::to_json(curve), log);
+  return 0;
+}
+
+int run_cost(const Arguments& arguments, Log& log) {
+  report::CostOptions options{
+      .store = arguments.store_path(), .peers = !arguments.no_peers, .n_threads = arguments.n_threads()};
+  options.studies.assign(arguments.studies.begin(), arguments.studies.end());
+  const auto cost = report::cost_report(options, log, base::interrupt_token());
+  fmt::print("{}", report::terminal_table(cost));
+  write(arguments.json.empty() ? options.studies.front() / "cost.json" : fs::path(arguments.json),
+        report::to_json(cost), log);
+  return 0;
+}
+
+void add_common(CLI::App& command, Arguments& arguments) {
+  command.add_option("--store", arguments.store, "store of cases, instead of the one the study names");
+  command.add_option("--threads", arguments.threads, "threads to use; 0: all")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command.add_flag("--quiet", arguments.quiet, "no progress, only results and warnings");
+}
+
+void add_accuracy(CLI::App& app, Arguments& arguments) {
+  auto& command = *app.add_subcommand(
+      "accuracy", "Errors on the held-out cases, beside every peer; table, JSON, CSV and one HTML page");
+  command.add_option("study", arguments.studies, "a trained study directory")->required()->expected(1);
+  command.add_option("--json", arguments.json, "write all figures as JSON");
+  command.add_option("--csv", arguments.csv, "write errors by field, method and case as CSV");
+  command.add_option("--html", arguments.html, "write the page: one file that opens offline");
+  command.add_option("--against", arguments.against,
+                     "further bundles (.elrom) or studies to show beside the peers");
+  command.add_flag("--small", arguments.small,
+                   "accepted for scripts: this command ends within a minute anyway");
+  add_common(command, arguments);
+}
+
+void add_learning_curve(CLI::App& app, Arguments& arguments) {
+  auto& command = *app.add_subcommand(
+      "learning-curve", "What more cases buy: the method fitted anew on subsets of its training cases");
+  command.add_option("study", arguments.studies, "a trained study directory")->required()->expected(1);
+  command.add_option("--json", arguments.json,
+                     "where to write; default STUDY/learning-curve.json, which the page then shows");
+  command.add_option("--method", arguments.method,
+                     "method to fit; default: the one that answers for most fields of the study");
+  command.add_option("--fields", arguments.fields, "fields; default: all of the study")->delimiter(',');
+  command.add_option("--points", arguments.points, "subset sizes from an eighth of the cases to all")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 50));
+  command.add_option("--repeats", arguments.repeats, "random nested draws")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100));
+  command.add_option("--seed", arguments.seed, "seed of the draws")->capture_default_str();
+  command.add_flag("--v1-v2", arguments.v1_v2,
+                   "print the source's comparison: a third of the cases against all, by field");
+  command.add_flag("--small", arguments.small, "three sizes, one draw: ends within a minute");
+  add_common(command, arguments);
+}
+
+void add_cost(CLI::App& app, Arguments& arguments) {
+  auto& command = *app.add_subcommand(
+      "cost", "Error against training and prediction time, for the studies named and their peers");
+  command
+      .add_option("studies", arguments.studies, "trained study directories; changes are against the first")
+      ->required();
+  command.add_option("--json", arguments.json,
+                     "where to write; default FIRST_STUDY/cost.json, which the page then shows");
+  command.add_flag("--no-peers", arguments.no_peers, "the studies' own models only (an ablation table)");
+  command.add_flag("--small", arguments.small,
+                   "accepted for scripts: this command ends within a minute anyway");
+  add_common(command, arguments);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "Reports on trained ELROM studies.\nExit status: 2 usage, 3 input, 5 numerical, 130 interrupted."};
+  app.set_version_flag("--version", program_version());
+  app.require_subcommand(1);
+  Arguments arguments;
+  add_accuracy(app, arguments);
+  add_learning_curve(app, arguments);
+  add_cost(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
+  }
+  const auto log = make_console_log(arguments.quiet ? Level::warning : Level::info);
+  if (app.got_subcommand("accuracy")) return run_accuracy(arguments, *log);
+  if (app.got_subcommand("learning-curve")) return run_learning_curve(arguments, *log);
+  return run_cost(arguments, *log);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return elrom::base::run_app("elrom-report", [&] { return run(argc, argv); });
+}
