@@ -123,15 +123,18 @@ TEST(Metrics, NoiseFollowsAPowerOfTheLoad) {
 
   // Four times the energy at twice the load: the square of the load.
   EXPECT_THAT(noise_at_loads(measured, energies, loads),
-              testing::ElementsAre(testing::DoubleNear(1, 1e-12), testing::DoubleNear(4, 1e-12), testing::DoubleNear(0.25, 1e-12)));
+              testing::ElementsAre(testing::DoubleNear(1, 1e-12), testing::DoubleNear(4, 1e-12),
+                                   testing::DoubleNear(0.25, 1e-12)));
 }
 
 TEST(Metrics, NoiseAtOneMeasuredLoadStandsForAll) {
   const std::vector<double> loads{0.5, 1.0};
 
   EXPECT_THAT(noise_at_loads(std::vector{0.7}, std::vector{3.0}, loads), testing::ElementsAre(3, 3));
-  EXPECT_THAT(noise_at_loads(std::vector{0.7, 0.7}, std::vector{2.0, 4.0}, loads), testing::ElementsAre(3, 3));
-  EXPECT_THAT(noise_at_loads(std::vector{0.7, 0.9}, std::vector{0.0, 4.0}, loads), testing::ElementsAre(2, 2));
+  EXPECT_THAT(noise_at_loads(std::vector{0.7, 0.7}, std::vector{2.0, 4.0}, loads),
+              testing::ElementsAre(3, 3));
+  EXPECT_THAT(noise_at_loads(std::vector{0.7, 0.9}, std::vector{0.0, 4.0}, loads),
+              testing::ElementsAre(2, 2));
 }
 
 TEST(Metrics, MoreNoiseThanErrorLeavesZeroError) {
