@@ -56,8 +56,9 @@ Eigen::MatrixXd padded(const Eigen::MatrixXd& y, const MatrixD& x, const RbfOpti
 }
 
 Eigen::MatrixXd solve(const Eigen::MatrixXd& system, const Eigen::MatrixXd& right) {
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(system);
-  if (lu.rcond() > 1e-14) return lu.solve(right);
+  const Eigen::MatrixXd solution = system.partialPivLu().solve(right);
+  const double error = (system * solution - right).norm();
+  if (error <= 1e-8 * (system.norm() * solution.norm() + right.norm())) return solution;
   // Repeated points, or constant inputs under a tail of degree 1: the solution of least norm.
   return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(system).solve(right);
 }
