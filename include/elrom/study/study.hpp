@@ -1,0 +1,78 @@
+#pragma once
+// A study: a folder with study.toml in, model.elrom and its peers out. Every stage keeps its results under
+// the digest of its inputs (stage_cache.hpp), so a second run, or one after a crash, redoes only what is not
+// valid any more.
+//
+//   STUDY/resolved.toml     settings as used        STUDY/split.json     cases by part
+//   STUDY/model.elrom       the model               STUDY/peers/*.elrom  peers on the same cases, each a
+//   bundle STUDY/stages/*          kept results            STUDY/search.sqlite  every trial STUDY/timing.json
+//   seconds a stage
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "elrom/base/log.hpp"
+#include "elrom/field/snapshot_store.hpp"
+#include "elrom/study/banding.hpp"
+#include "elrom/study/method.hpp"
+#include "elrom/study/networks_method.hpp"
+#include "elrom/study/settings.hpp"
+#include "elrom/study/stage_cache.hpp"
+#include "elrom/study/trainer.hpp"
+
+namespace elrom::study {
+
+/// What a study builds with beside its own methods; filled by the program.
+struct Toolbox {
+  std::shared_ptr<const Trainer> trainer;  ///< nullptr: LibTorch was left out of this build
+  /// Methods that live outside of elrom::study ("pod_mlp"); nullptr for an unknown name.
+  std::function<std::unique_ptr<Method>(const std::string& name, const Settings& settings)> make_method;
+};
+
+/// What a run found for one field.
+struct FieldOutcome {
+  std::string field, method;
+  double cross_validated_nrmse = 0;  ///< against the training mean, 1 = no skill
+  std::vector<Band> bands;           ///< screen and search only
+};
+
+/// Thread rule: one thread at a time; settings.n_threads() is used inside.
+class Study {
+ public:
+  /// Locks the folder. @throws UsageError when another process works in it, InputError on a bad store
+  Study(std::filesystem::path folder, Settings settings, Toolbox toolbox, Log& log, std::stop_token stop);
+  ~Study();
+
+  /// The stages of the networks, one by one.
+  std::vector<FieldOutcome> screen();
+  std::vector<FieldOutcome> search();
+  /// The model alone. @param bundle where to; empty: model.elrom of the study
+  std::vector<FieldOutcome> fit(const std::filesystem::path& bundle = {});
+  /// The model and every peer.
+  std::vector<FieldOutcome> run();
+
+  [[nodiscard]] const Settings& settings() const;
+  [[nodiscard]] const field::SnapshotStore& store() const;
+  [[nodiscard]] const CaseSet& cases() const;
+  /// Held-out rows of the store.
+  [[nodiscard]] const std::vector<std::size_t>& held_out() const;
+  /// Retraining: fit() takes the networks' bands and hyperparameters of these earlier cases, where the fast
+  /// screen says that the cases since then left the bands as they were.
+  void reuse_plans_of(const std::vector<std::string>& earlier_cases);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Cases of a store that a study builds with: its held-out cases left out, its mirrors resolved.
+/// Mirrors that the settings name must resolve; the shipped furnace's are used where they do.
+[[nodiscard]] CaseSet study_cases(const field::SnapshotStore& store, const Settings& settings,
+                                  const std::vector<std::size_t>& rows, Log& log);
+
+}  // namespace elrom::study

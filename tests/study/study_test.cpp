@@ -1,0 +1,219 @@
+#include "elrom/study/study.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/model/bundle.hpp"
+#include "elrom/model/predictor.hpp"
+#include "elrom/study/split.hpp"
+#include "study_fixture.hpp"
+
+namespace elrom::study {
+namespace {
+
+// "Trains" a network without hidden layers: the targets' mean as bias. Counts its calls; can be killed.
+class MeanTrainer final : public Trainer {
+ public:
+  [[nodiscard]] std::string name() const override { return "mean"; }
+  [[nodiscard]] TrainingResult train(const TrainingProblem& problem, const Hyperparameters& hyperparameters,
+                                     const TrainingBudget&, base::Seed, TrainingMonitor*,
+                                     const std::stop_token&, const std::filesystem::path&) const override {
+    if (++calls == kill_at) throw Interrupted("killed");
+    const auto n_in = problem.train_inputs.cols(), n_out = problem.train_targets.cols();
+    const Eigen::RowVectorXf mean = problem.train_targets.colwise().mean();
+    const float slope = static_cast<float>(hyperparameters.learning_rate);
+    const std::vector<float> bias(mean.data(), mean.data() + n_out);
+    TrainingResult result;
+    result.network = model::Network({{io::Tensor::copy(MatrixF(MatrixF::Constant(n_out, n_in, slope))),
+                                      io::Tensor::copy(std::span(bias), {bias.size()})}},
+                                    model::Activation::relu);
+    result.validation_mse = (problem.validation_targets.rowwise() - mean).squaredNorm() /
+                                static_cast<double>(problem.validation_targets.size()) +
+                            slope;
+    result.epochs = 1;
+    return result;
+  }
+  mutable std::atomic<int> calls{0};
+  int kill_at = -1;
+};
+
+class SmallStudy : public ::testing::Test {
+ protected:
+  SmallStudy() { write_small_store(folder.path() / "snapshots.h5", 20); }
+  Settings settings(const std::string& method) const {
+    return read_settings(folder.path() / "study.toml",
+                         {"effort=quick", "method=" + method, "threads=2",
+                          "peers.methods=[\"nearest\", \"linear\"]", "peers.folds=3"});
+  }
+  std::vector<FieldOutcome> run(const std::string& method) {
+    return Study(folder.path(), settings(method), {.trainer = trainer, .make_method = {}}, silent_log(), {})
+        .run();
+  }
+  std::string bundle_digest() const { return base::sha256_file(folder.path() / "model.elrom"); }
+  nlohmann::json timing() const {
+    return nlohmann::json::parse(base::read_text(folder.path() / "timing.json"));
+  }
+
+  TemporaryFolder folder{"study"};
+  std::shared_ptr<MeanTrainer> trainer = std::make_shared<MeanTrainer>();
+};
+
+TEST_F(SmallStudy, RunWritesModelPeersSplitAndSettings) {
+  const auto outcomes = run("linear");
+
+  EXPECT_THAT(outcomes, ::testing::SizeIs(2));
+  for (const auto* file : {"model.elrom", "peers/nearest.elrom", "peers/networks.elrom", "resolved.toml",
+                           "split.json", "timing.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / file)) << file;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "peers/linear.elrom"))
+      << "the model itself is no peer";
+  const auto split = read_split(folder.path() / "split.json");
+  EXPECT_EQ(split.held_out.size(), 4u);
+  EXPECT_EQ(split.train.size() + split.validation.size() + split.test.size(), 16u);
+}
+
+TEST_F(SmallStudy, ModelPredictsHeldOutCasesBetterThanTheirMean) {
+  const auto outcomes = run("linear");
+
+  EXPECT_LT(outcomes[0].cross_validated_nrmse, 0.2);
+  const model::Predictor predictor(folder.path() / "model.elrom", {.fields = {"pressure"}});
+  const auto store = field::SnapshotStore::open(folder.path() / "snapshots.h5");
+  const auto held_out = store.find("load_*");
+  const auto truth = store.read("pressure", held_out);
+  const auto inputs = store.inputs(held_out);
+  std::vector<float> values(predictor.size());
+  model::Predictor::Scratch scratch;
+  predictor.predict({inputs.row(0).data(), 3}, values, {}, scratch);
+  for (std::size_t c = 0; c < values.size(); ++c)
+    EXPECT_NEAR(values[c], truth(0, static_cast<Eigen::Index>(c)), 60) << "values span 1000 Pa";
+}
+
+TEST_F(SmallStudy, BundleKnowsItsCasesAndCarriesIntervals) {
+  run("linear");
+
+  const model::BundleReader reader(folder.path() / "model.elrom");
+  EXPECT_EQ(reader.info().cases.size(), 16u);
+  EXPECT_EQ(reader.info().method, "linear");
+  EXPECT_NE(reader.uncertainty("pressure"), nullptr);
+  EXPECT_TRUE(nlohmann::json::parse(reader.info().accuracy_json)["pressure"]["nrmse"].is_number());
+}
+
+TEST_F(SmallStudy, SecondRunRedoesNothingAndWritesTheSameBytes) {
+  run("networks");
+  const auto first = bundle_digest();
+  const int calls = trainer->calls;
+
+  run("networks");
+
+  EXPECT_EQ(trainer->calls, calls);
+  EXPECT_EQ(bundle_digest(), first);
+  for (const auto* stage : {"screen", "model"}) {
+    if (timing()["stages"].contains(stage)) EXPECT_EQ(timing()["stages"][stage]["computed"], 0) << stage;
+  }
+}
+
+TEST_F(SmallStudy, RunKilledInTheMiddleEndsWithTheSameBundle) {
+  run("networks");
+  const auto expected = bundle_digest();
+  for (const int kill_at : {1, 5, 12}) {
+    for (const auto* name :
+         {"stages", "search.sqlite", "search.sqlite-wal", "search.sqlite-shm", "model.elrom"}) {
+      std::filesystem::remove_all(folder.path() / name);
+    }
+    trainer->calls = 0;
+    trainer->kill_at = kill_at;
+    EXPECT_THROW(run("networks"), Interrupted);
+    trainer->kill_at = -1;
+
+    run("networks");
+
+    EXPECT_EQ(bundle_digest(), expected) << "killed at call " << kill_at;
+  }
+}
+
+TEST_F(SmallStudy, ThreadsDoNotChangeTheBundle) {
+  run("networks");
+  const auto two = bundle_digest();
+  std::filesystem::remove_all(folder.path() / "stages");
+  std::filesystem::remove(folder.path() / "search.sqlite");
+  auto one_thread = settings("networks");
+  one_thread.threads = 1;
+
+  Study(folder.path(), one_thread, {.trainer = trainer, .make_method = {}}, silent_log(), {}).run();
+
+  EXPECT_EQ(bundle_digest(), two);
+}
+
+TEST_F(SmallStudy, DamagedStageIsComputedAgain) {
+  run("linear");
+  const auto expected = bundle_digest();
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "stages")) {
+    std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
+  }
+  std::filesystem::remove(folder.path() / "model.elrom");
+
+  run("linear");
+
+  EXPECT_EQ(bundle_digest(), expected);
+}
+
+TEST_F(SmallStudy, PlaneScopeAnswersForEveryCell) {
+  auto by_plane = settings("networks");
+  by_plane.bands.scope = "plane";
+
+  Study(folder.path(), by_plane, {.trainer = trainer, .make_method = {}}, silent_log(), {}).fit();
+
+  const model::Predictor predictor(folder.path() / "model.elrom");
+  std::vector<float> values(predictor.size());
+  model::Predictor::Scratch scratch;
+  predictor.predict(std::vector<double>{70, 1.5, 3}, values, {}, scratch);
+  for (const float value : values) EXPECT_TRUE(std::isfinite(value));
+}
+
+TEST_F(SmallStudy, AutoChoosesSomethingThatBeatsTheMean) {
+  const auto outcomes = run("auto");
+
+  for (const auto& outcome : outcomes)
+    EXPECT_LT(outcome.cross_validated_nrmse, 0.7) << outcome.field << ": " << outcome.method;
+}
+
+TEST_F(SmallStudy, NetworksWithoutATrainerAreNotBuilt) {
+  EXPECT_THROW(Study(folder.path(), settings("networks"), {}, silent_log(), {}), NotBuiltError);
+  EXPECT_NO_THROW(Study(folder.path(), settings("linear"), {}, silent_log(), {}).screen())
+      << "the screening is our own";
+}
+
+TEST_F(SmallStudy, UnknownFieldIsRefusedWithTheNearest) {
+  auto wrong = settings("linear");
+  wrong.fields = {"presure"};
+
+  EXPECT_THROW(Study(folder.path(), wrong, {}, silent_log(), {}), UsageError);
+}
+
+TEST_F(SmallStudy, SecondProcessIsRefusedByTheLock) {
+  const Study first(folder.path(), settings("linear"), {}, silent_log(), {});
+
+  EXPECT_THROW(Study(folder.path(), settings("linear"), {}, silent_log(), {}), UsageError);
+}
+
+TEST_F(SmallStudy, RetrainingReusesTheEarlierPlan) {
+  run("networks");
+  write_small_store(folder.path() / "snapshots.h5", 4, 20);
+  trainer->calls = 0;
+  Study study(folder.path(), settings("networks"), {.trainer = trainer, .make_method = {}}, silent_log(), {});
+  study.reuse_plans_of(model::BundleReader(folder.path() / "model.elrom").info().cases);
+
+  study.fit(folder.path() / "candidate.elrom");
+
+  EXPECT_EQ(model::BundleReader(folder.path() / "candidate.elrom").info().cases.size(), 20u);
+  EXPECT_GT(trainer->calls, 0);
+}
+
+}  // namespace
+}  // namespace elrom::study

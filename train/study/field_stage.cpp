@@ -1,0 +1,99 @@
+#include "field_stage.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/math/statistics.hpp"
+#include "elrom/study/auto_method.hpp"
+#include "elrom/study/cross_validation.hpp"
+#include "records.hpp"
+
+namespace elrom::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+// One method by itself, brought into the same form as a choice among several.
+AutoFit fit_alone(const FieldStageRequest& request, const std::vector<std::size_t>& rows,
+                  const FitContext& context) {
+  const auto& data = request.data;
+  const auto& method = *request.candidates.front();
+  AutoFit fit;
+  fit.nrmse = NAN;
+  if (request.n_folds > 0) {
+    const auto folds = load_grouped_folds(data.cases->loads, rows, request.n_folds);
+    fit.residuals = data.values - method.cross_predict(data, folds, context);
+    fit.nrmse = cross_validated_nrmse(data, rows, fit.residuals);
+  }
+  fit.candidates.push_back({.name = method.name(), .nrmse = fit.nrmse, .weight = 1});
+  fit.model = method.fit(data, rows, context);
+  return fit;
+}
+
+Json accuracy_of(const std::string& name, const AutoFit& fit) {
+  Json candidates = Json::array();
+  for (const auto& candidate : fit.candidates) {
+    candidates.push_back(
+        {{"name", candidate.name}, {"nrmse", finite_or_null(candidate.nrmse)}, {"weight", candidate.weight}});
+    if (!candidate.failure.empty()) candidates.back()["failure"] = candidate.failure;
+  }
+  return {{"method", name},
+          {"kind", fit.model->kind()},
+          {"nrmse", finite_or_null(fit.nrmse)},
+          {"candidates", candidates}};
+}
+
+io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& context) {
+  const auto& data = request.data;
+  const auto rows = math::all_rows(data.cases->n_cases());
+  const auto fit = request.name == "auto"
+                       ? fit_auto(data, rows, request.candidates, {.n_folds = request.n_folds}, context)
+                       : fit_alone(request, rows, context);
+  io::TensorFile file;
+  if (fit.residuals.size() > 0) {
+    model::Uncertainty(fit.residuals, data.cases->mesh.n_columns).save(file, "uncertainty");
+    file.set_text("has_uncertainty", "yes");
+  }
+  fit.model->save(file, "model");
+  file.set_text("accuracy", accuracy_of(request.name, fit).dump());
+  return file;
+}
+
+std::string digest_of(const FieldStageRequest& request, const FitContext& context) {
+  base::Sha256 digest;
+  digest.add(data_digest(request.data, math::all_rows(request.data.cases->n_cases())));
+  digest.add(request.name).add(request.settings_digest);
+  for (const auto* method : request.candidates) digest.add(method->name());
+  digest.add_value(context.seed.value()).add_value(request.n_folds);
+  for (const auto& mirror : request.data.cases->mirrors) digest.add(mirror.name);
+  return digest.hex();
+}
+
+}  // namespace
+
+std::shared_ptr<const model::FieldModel> FieldStage::model() const {
+  return model::load_field_model(file, "model");
+}
+
+std::shared_ptr<const model::Uncertainty> FieldStage::uncertainty() const {
+  if (!file.has_text("has_uncertainty")) return nullptr;
+  return std::make_shared<const model::Uncertainty>(model::Uncertainty::load(file, "uncertainty"));
+}
+
+double FieldStage::nrmse() const {
+  const auto value = Json::parse(accuracy())["nrmse"];
+  return value.is_number() ? value.get<double>() : NAN;
+}
+
+FieldStage fit_field(const FieldStageRequest& request, const StageCache& cache, const FitContext& context) {
+  check(!request.candidates.empty(), "fit_field: a method");
+  return {cache.get("model", request.name + "-" + request.data.info.name, digest_of(request, context),
+                    [&] { return make_stage(request, context); })};
+}
+
+}  // namespace elrom::study

@@ -1,0 +1,92 @@
+#include "method_set.hpp"
+
+#include <algorithm>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/study/kernel_method.hpp"
+#include "elrom/study/peers.hpp"
+
+namespace elrom::study {
+namespace {
+
+bool needs_trainer(const std::string& name) { return name == "networks" || name == "pod_mlp"; }
+
+NotBuiltError no_trainer(const std::string& name) {
+  return NotBuiltError({.what = "method " + name + " needs LibTorch, which this build left out",
+                        .advice = "build with -DELROM_TORCH=ON, or choose another method"});
+}
+
+}  // namespace
+
+MethodSet::MethodSet(const Settings& settings, Toolbox toolbox, const StageCache* cache, TrialStore* trials)
+    : settings_(settings), toolbox_(std::move(toolbox)), cache_(cache), trials_(trials) {
+  if (needs_trainer(settings_.method) && !has_networks()) throw no_trainer(settings_.method);
+  for (const auto& name : settings_.peers.methods) {
+    if (!is_peer(name)) {
+      throw UsageError({.what = "unknown peer '" + name + "'",
+                        .where = "peers.methods",
+                        .advice = base::name_advice(name, peer_names())});
+    }
+  }
+}
+
+std::unique_ptr<Method> MethodSet::make(const std::string& name) const {
+  if (is_peer(name)) return make_peer(name);
+  if (name == "kernel") return make_kernel_method();
+  if (needs_trainer(name) && !has_networks()) throw no_trainer(name);
+  if (name == "networks")
+    return std::make_unique<NetworksMethod>(settings_, toolbox_.trainer, cache_, trials_);
+  auto method = toolbox_.make_method ? toolbox_.make_method(name, settings_) : nullptr;
+  if (!method) throw UsageError({.what = "unknown method '" + name + "'", .where = "method"});
+  return method;
+}
+
+const Method& MethodSet::get(const std::string& name) {
+  if (needs_trainer(name) && !has_networks()) throw no_trainer(name);
+  if (name == "networks") return networks();
+  auto& method = made_[name];
+  if (!method) method = make(name);
+  return *method;
+}
+
+NetworksMethod& MethodSet::networks() {
+  auto& method = made_["networks"];
+  if (!method) method = std::make_unique<NetworksMethod>(settings_, toolbox_.trainer, cache_, trials_);
+  return static_cast<NetworksMethod&>(*method);
+}
+
+std::vector<const Method*> MethodSet::candidates() {
+  std::vector<const Method*> methods{&get("kernel")};
+  for (const auto& name : settings_.peers.methods) methods.push_back(&get(name));
+  if (settings_.peers.networks && has_networks()) methods.push_back(&get("networks"));
+  return methods;
+}
+
+std::vector<std::string> MethodSet::bundles() const {
+  std::vector<std::string> names{settings_.method};
+  for (const auto& name : settings_.peers.methods)
+    if (name != settings_.method) names.push_back(name);
+  if (settings_.peers.networks && has_networks() && settings_.method != "networks")
+    names.push_back("networks");
+  return names;
+}
+
+bool MethodSet::is_peer(const std::string& name) const {
+  return std::ranges::find(peer_names(), name) != peer_names().end();
+}
+
+bool MethodSet::trains_networks(const std::string& name) const {
+  return has_networks() && (name == "networks" || (name == "auto" && settings_.peers.networks));
+}
+
+std::string MethodSet::settings_text(const std::string& name) const {
+  if (is_peer(name)) return name;
+  std::string text = name;
+  for (const auto* section : {"symmetry", "split", "screen", "bands", "search", "fit", "networks", "peers"}) {
+    text += to_toml(settings_, section);
+  }
+  return text;
+}
+
+}  // namespace elrom::study

@@ -1,0 +1,38 @@
+#pragma once
+// The methods that a study's settings ask for, each made once. Internal to the study.
+
+#include "elrom/study/study.hpp"
+
+namespace elrom::study {
+
+class MethodSet {
+ public:
+  /// @throws NotBuiltError when the settings name a method that needs a trainer and there is none
+  MethodSet(const Settings& settings, Toolbox toolbox, const StageCache* cache, TrialStore* trials);
+
+  /// @throws UsageError for an unknown name
+  [[nodiscard]] const Method& get(const std::string& name);
+  /// Without a trainer it can screen, no more.
+  [[nodiscard]] NetworksMethod& networks();
+  /// What "auto" chooses among.
+  [[nodiscard]] std::vector<const Method*> candidates();
+  /// Methods to write bundles of: the model's own first, then the peers.
+  [[nodiscard]] std::vector<std::string> bundles() const;
+  /// Whether networks take part in this method.
+  [[nodiscard]] bool trains_networks(const std::string& name) const;
+  [[nodiscard]] bool is_peer(const std::string& name) const;
+  /// Text of the settings that a method's result depends on.
+  [[nodiscard]] std::string settings_text(const std::string& name) const;
+
+ private:
+  [[nodiscard]] std::unique_ptr<Method> make(const std::string& name) const;
+  [[nodiscard]] bool has_networks() const { return toolbox_.trainer != nullptr; }
+
+  const Settings& settings_;
+  Toolbox toolbox_;
+  const StageCache* cache_;
+  TrialStore* trials_;
+  std::map<std::string, std::unique_ptr<Method>> made_;
+};
+
+}  // namespace elrom::study

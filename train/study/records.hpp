@@ -1,0 +1,44 @@
+#pragma once
+// Records of one field: one plane of one case each, standardised (source: eq. 6.1). Internal to the networks'
+// method.
+
+#include "elrom/model/banded_networks.hpp"
+#include "elrom/study/banding.hpp"
+#include "elrom/study/method.hpp"
+#include "elrom/study/screening.hpp"
+#include "elrom/study/trainer.hpp"
+
+namespace elrom::study {
+
+struct RecordOptions {
+  model::PlaneEncodingKind encoding = model::PlaneEncodingKind::index;
+  model::TransformKind transform = model::TransformKind::none;
+  bool scale_cells = false;  ///< targets standardised cell by cell instead of column by column
+  bool mirrors = false;      ///< mirror images of the training records are training records too
+  bool linear_relevance = false;
+};
+
+struct RecordSet {
+  model::InputScaler inputs;
+  model::PlaneEncoding planes;
+  model::TargetTransform transform;
+  model::OutputScaler outputs;
+  ScreeningData records;  ///< inputs: scaled boundary conditions, then the plane's encoding
+};
+
+/// @param part (cases.size() * n_planes), case by case. Scalers see cases with a training record only.
+[[nodiscard]] RecordSet make_records(const FieldData& data, std::span<const std::size_t> cases,
+                                     const std::vector<Part>& part, const RecordOptions& options);
+
+/// Records and columns of one band; with a mask, records of planes that the band does not answer for are left
+/// out.
+[[nodiscard]] TrainingProblem make_problem(const ScreeningData& records, const Band& band);
+
+/// How much each scaled input moves the field, by a ridge fit of the field's principal components: 1 for the
+/// strongest input, at least 0.1.
+[[nodiscard]] std::vector<double> linear_relevance(const MatrixD& inputs, const MatrixF& values);
+
+/// SHA-256 over inputs, values, loads and mesh of these cases: what every result of theirs depends on.
+[[nodiscard]] std::string data_digest(const FieldData& data, std::span<const std::size_t> cases);
+
+}  // namespace elrom::study

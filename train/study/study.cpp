@@ -1,0 +1,243 @@
+#include "elrom/study/study.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/base/version.hpp"
+#include "elrom/math/statistics.hpp"
+#include "elrom/study/split.hpp"
+#include "field_stage.hpp"
+#include "method_set.hpp"
+#include "study_bundle.hpp"
+#include "timing.hpp"
+
+namespace elrom::study {
+namespace {
+
+constexpr double least_equal = 0.9;  // share of columns that keep their band for earlier bands to hold
+
+std::filesystem::path made(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw SystemError(
+        {.what = "cannot make the study's folder", .where = folder.string(), .found = error.message()});
+  return folder;
+}
+
+std::filesystem::path store_path(const std::filesystem::path& folder, const Settings& settings) {
+  const std::filesystem::path store(settings.store);
+  return store.is_absolute() ? store : folder / store;
+}
+
+std::vector<field::FieldInfo> chosen_fields(const field::SnapshotStore& store, const Settings& settings) {
+  if (settings.fields.empty()) return store.fields();
+  std::vector<std::string> known;
+  for (const auto& info : store.fields()) known.push_back(info.name);
+  std::vector<field::FieldInfo> chosen;
+  for (const auto& name : settings.fields) {
+    const auto found = std::ranges::find(store.fields(), name, &field::FieldInfo::name);
+    if (found == store.fields().end()) {
+      throw UsageError({.what = "unknown field '" + name + "'",
+                        .where = "fields.names",
+                        .advice = base::name_advice(name, known)});
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+struct Study::Impl {
+  using Clock = std::chrono::steady_clock;
+
+  Impl(std::filesystem::path folder_, Settings settings_, Toolbox toolbox, Log& log_, std::stop_token stop_)
+      : folder(made(std::move(folder_))),
+        settings(std::move(settings_)),
+        log(log_),
+        stop(std::move(stop_)),
+        lock(folder / ".lock"),
+        store(field::SnapshotStore::open(store_path(folder, settings))),
+        rows(hold_out(names_of(store), settings.split.held_out)),
+        cases(study_cases(store, settings, rows.building, log)),
+        fields(chosen_fields(store, settings)),
+        cache(folder / "stages", log),
+        trials(folder / "search.sqlite"),
+        methods(settings, std::move(toolbox), &cache, &trials) {
+    plain_cases = cases;
+    plain_cases.mirrors.clear();  // peers as a user would run them: without mirror images
+    base::write_text(folder / "resolved.toml", to_toml(settings));
+    write_names();
+  }
+
+  static std::vector<std::string> names_of(const field::SnapshotStore& store) {
+    std::vector<std::string> names;
+    for (const auto& record : store.cases()) names.push_back(record.inputs.name);
+    return names;
+  }
+
+  [[nodiscard]] base::Seed seed() const { return base::Seed(static_cast<std::uint64_t>(settings.seed)); }
+  [[nodiscard]] FitContext context() const {
+    return {.seed = seed(), .n_threads = settings.n_threads(), .log = &log, .stop = stop};
+  }
+
+  void write_names() const {
+    SplitNames split{.by = settings.split.by, .train = {}, .validation = {}, .test = {}, .held_out = {}};
+    const auto parts = split_cases(cases.loads, settings.split.fractions, seed());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      auto& names = parts[i] == Part::train        ? split.train
+                    : parts[i] == Part::validation ? split.validation
+                                                   : split.test;
+      names.push_back(cases.names[i]);
+    }
+    for (const auto row : rows.held_out) split.held_out.push_back(store.cases()[row].inputs.name);
+    write_split(folder / "split.json", split);
+  }
+
+  /// One field at a time is in memory.
+  template <class Work>
+  void for_every_field(const Work& work) {
+    for (const auto& info : fields) {
+      if (stop.stop_requested()) throw Interrupted("stopped on request; the next run goes on from here");
+      FieldData data{&cases, info, store.read(info.name, rows.building)};
+      work(data);
+    }
+  }
+
+  std::vector<FieldOutcome> plan_networks(bool with_search) {
+    const auto& networks = methods.networks();
+    std::vector<FieldOutcome> outcomes;
+    for_every_field([&](const FieldData& data) {
+      const auto all = math::all_rows(cases.n_cases());
+      auto bands = with_search ? networks.plan(data, all, context()).bands
+                               : make_bands(networks.screen_field(data, all, context()), settings.bands);
+      outcomes.push_back({.field = data.info.name,
+                          .method = "networks",
+                          .cross_validated_nrmse = NAN,
+                          .bands = std::move(bands)});
+    });
+    return outcomes;
+  }
+
+  // The earlier cases' screening and search are in the cache; the fast screen tells whether they still hold.
+  void reuse_plan(const FieldData& data) {
+    const auto all = math::all_rows(cases.n_cases());
+    auto& networks = methods.networks();
+    networks.forget_plan(data.info.name);
+    const double equal = equal_bands(networks.fast_screen(data, earlier_rows, context()),
+                                     networks.fast_screen(data, all, context()), settings.bands.edges);
+    log.info(fmt::format("{}: {:.0f} % of columns keep their band{}", data.info.name, 100 * equal,
+                         equal < least_equal ? "; screened and searched again" : ""));
+    if (equal >= least_equal)
+      networks.keep_plan(data.info.name, networks.plan(data, earlier_rows, context()));
+  }
+
+  // Peers see no mirrors; whatever else is asked for sees all that the study has.
+  FieldStage fit_one(const std::string& name, FieldData& data, bool cross_validate) {
+    if (earlier_rows.size() > 1 && methods.trains_networks(name)) reuse_plan(data);
+    data.cases = methods.is_peer(name) ? &plain_cases : &cases;
+    const FieldStageRequest request{
+        .name = name,
+        .candidates = name == "auto" ? methods.candidates() : std::vector{&methods.get(name)},
+        .data = data,
+        .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0,
+        .settings_digest = methods.settings_text(name)};
+    auto stage = fit_field(request, cache, context());
+    data.cases = &cases;
+    return stage;
+  }
+
+  std::vector<FieldOutcome> fit(bool with_peers, const std::filesystem::path& model_path) {
+    const auto begin = Clock::now();
+    const auto names = with_peers ? methods.bundles() : std::vector{settings.method};
+    std::map<std::string, std::map<std::string, FieldStage>> stages;  // by method, field
+    std::vector<FieldOutcome> outcomes;
+    for_every_field([&](FieldData& data) {
+      const auto& field = data.info.name;
+      for (const auto& name : names) {
+        if (stop.stop_requested()) throw Interrupted("stopped on request; the next run goes on from here");
+        stages[name].emplace(field, fit_one(name, data, name == settings.method));
+      }
+      const auto& main = stages.at(settings.method).at(field);
+      outcomes.push_back(outcome_of(field, main));
+      log.info(fmt::format("{}: {}, cross-validated NRMSE {}", field, outcomes.back().method,
+                           base::rounded(main.nrmse(), 3)));
+    });
+    for (const auto& [name, of_method] : stages) write_bundle(name, of_method, model_path);
+    write_timing(folder / "timing.json", cache.clock().entries(),
+                 std::chrono::duration<double>(Clock::now() - begin).count(), settings.n_threads());
+    return outcomes;
+  }
+
+  static FieldOutcome outcome_of(const std::string& field, const FieldStage& stage) {
+    const auto accuracy = nlohmann::json::parse(stage.accuracy());
+    std::string best;
+    for (const auto& candidate : accuracy["candidates"]) {
+      if (candidate["weight"].get<double>() <= 0) continue;
+      best += (best.empty() ? "" : " + ") + candidate["name"].get<std::string>();
+    }
+    return {.field = field, .method = best, .cross_validated_nrmse = stage.nrmse(), .bands = {}};
+  }
+
+  void write_bundle(const std::string& name, const std::map<std::string, FieldStage>& stages,
+                    const std::filesystem::path& model_path) {
+    const bool is_main = name == settings.method;
+    const auto path = is_main ? model_path : made(folder / "peers") / (name + ".elrom");
+    const StudyBundle bundle{.method = name,
+                             .fields = fields,
+                             .cases = cases,
+                             .store_digest = store.digest(rows.building),
+                             .settings_digest = base::Sha256().add(methods.settings_text(name)).hex()};
+    const auto begin = Clock::now();
+    write_study_bundle(path, bundle, stages);
+    cache.clock().add("bundle", std::chrono::duration<double>(Clock::now() - begin).count(), false);
+  }
+
+  std::filesystem::path folder;
+  Settings settings;
+  Log& log;
+  std::stop_token stop;
+  base::FileLock lock;
+  field::SnapshotStore store;
+  HeldOut rows;
+  std::vector<std::size_t> earlier_rows;  // of `cases`; retraining only
+  CaseSet cases, plain_cases;
+  std::vector<field::FieldInfo> fields;
+  StageCache cache;
+  TrialStore trials;
+  MethodSet methods;
+};
+
+Study::Study(std::filesystem::path folder, Settings settings, Toolbox toolbox, Log& log, std::stop_token stop)
+    : impl_(std::make_unique<Impl>(std::move(folder), std::move(settings), std::move(toolbox), log,
+                                   std::move(stop))) {}
+Study::~Study() = default;
+
+std::vector<FieldOutcome> Study::screen() { return impl_->plan_networks(false); }
+std::vector<FieldOutcome> Study::search() { return impl_->plan_networks(true); }
+std::vector<FieldOutcome> Study::fit(const std::filesystem::path& bundle) {
+  return impl_->fit(false, bundle.empty() ? impl_->folder / "model.elrom" : bundle);
+}
+std::vector<FieldOutcome> Study::run() { return impl_->fit(true, impl_->folder / "model.elrom"); }
+const Settings& Study::settings() const { return impl_->settings; }
+const field::SnapshotStore& Study::store() const { return impl_->store; }
+const CaseSet& Study::cases() const { return impl_->cases; }
+const std::vector<std::size_t>& Study::held_out() const { return impl_->rows.held_out; }
+
+void Study::reuse_plans_of(const std::vector<std::string>& earlier_cases) {
+  impl_->earlier_rows.clear();
+  for (std::size_t i = 0; i < impl_->cases.n_cases(); ++i) {
+    const bool earlier = std::ranges::find(earlier_cases, impl_->cases.names[i]) != earlier_cases.end();
+    if (earlier) impl_->earlier_rows.push_back(i);
+  }
+}
+
+}  // namespace elrom::study

@@ -1,0 +1,61 @@
+#include "study_bundle.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/version.hpp"
+#include "elrom/model/bundle.hpp"
+
+namespace elrom::study {
+namespace {
+
+// What the bundle is made of; no time of day, so that the same study gives the same bytes.
+std::string content_digest(const StudyBundle& bundle, const std::map<std::string, FieldStage>& stages) {
+  base::Sha256 digest;
+  digest.add(bundle.method).add(bundle.store_digest).add(bundle.settings_digest).add(program_version());
+  for (const auto& [field, stage] : stages) digest.add(field).add(stage.file.digest());
+  return digest.hex();
+}
+
+bool holds(const std::filesystem::path& path, const std::string& content) {
+  if (!std::filesystem::exists(path)) return false;
+  try {
+    const model::BundleReader reader(path);
+    const auto found = reader.info().provenance.find("content");
+    if (found == reader.info().provenance.end() || found->second != content) return false;
+    reader.file().verify_all();
+    return true;
+  } catch (const Error&) {
+    return false;  // another kind, another version or damaged: it is written again
+  }
+}
+
+}  // namespace
+
+void write_study_bundle(const std::filesystem::path& path, const StudyBundle& study,
+                        const std::map<std::string, FieldStage>& stages) {
+  const auto content = content_digest(study, stages);
+  if (holds(path, content)) return;
+  model::Bundle bundle;
+  bundle.info.method = study.method;
+  bundle.info.fields = study.fields;
+  bundle.info.schema = study.cases.schema;
+  bundle.info.cases = study.cases.names;
+  bundle.info.provenance = {{"program", program_version()},
+                            {"store", study.store_digest},
+                            {"settings", study.settings_digest},
+                            {"content", content}};
+  nlohmann::ordered_json accuracy = nlohmann::ordered_json::object();
+  for (const auto& [field, stage] : stages) {
+    accuracy[field] = nlohmann::ordered_json::parse(stage.accuracy());
+    bundle.models[field] = stage.model();
+    if (auto uncertainty = stage.uncertainty()) bundle.uncertainty[field] = std::move(uncertainty);
+  }
+  bundle.info.accuracy_json = accuracy.dump();
+  bundle.mesh = study.cases.mesh;
+  bundle.guard = model::Guard(study.cases.schema, study.cases.inputs, study.cases.names, study.cases.loads);
+  bundle.write(path);
+}
+
+}  // namespace elrom::study

@@ -1,0 +1,17 @@
+#pragma once
+// timing.json: seconds of each stage of the last run, and what was reused. Internal to the study.
+
+#include <filesystem>
+
+#include "elrom/study/stage_cache.hpp"
+
+namespace elrom::study {
+
+/// Largest resident memory of this process so far [GiB].
+[[nodiscard]] double peak_rss_gib();
+
+/// Keeps, in "from_nothing", the seconds of the last run that reused nothing.
+void write_timing(const std::filesystem::path& path, const std::map<std::string, StageClock::Entry>& entries,
+                  double total_seconds, int n_threads);
+
+}  // namespace elrom::study
