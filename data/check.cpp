@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
@@ -40,7 +39,8 @@ void add_cells(const CaseSummary& one, std::vector<Finding>& found) {
 
 void add_mistakes(std::span<const CaseSummary> cases, std::vector<Finding>& found) {
   for (const auto& mistake : find_unit_mistakes(cases)) {
-    found.push_back({mistake.certain_cause ? "unit" : "far_input", Severity::suspicious,
+    found.push_back({mistake.certain_cause ? "unit" : "far_input",
+                     mistake.certain_cause ? Severity::wrong : Severity::suspicious,
                      cases[mistake.i_case].name, mistake.quantity, -1,
                      mistake.certain_cause ? "looks like " + mistake.explanation : mistake.explanation});
   }
@@ -50,7 +50,8 @@ void add_twins(std::span<const CaseSummary> cases, std::vector<Finding>& found) 
   for (const auto& twin : find_twins(cases)) {
     const auto& other = cases[twin.first].name;
     found.push_back(
-        {twin.exact ? "duplicate" : "near_duplicate", Severity::suspicious, cases[twin.second].name, "", -1,
+        {twin.exact ? "duplicate" : "near_duplicate", twin.exact ? Severity::wrong : Severity::suspicious,
+         cases[twin.second].name, "", -1,
          twin.exact ? fmt::format("all fields equal those of {}", other)
                     : fmt::format("fields nearly equal those of {} ({:.1f} % of the usual distance between "
                                   "cases)",
@@ -203,15 +204,6 @@ std::vector<Finding> findings_on(std::span<const Finding> findings, std::string_
     if (finding.case_name == case_name && finding.severity != Severity::note) result.push_back(finding);
   }
   return result;
-}
-
-Policy policy_of(std::string_view name) {
-  const std::map<std::string, Policy> known{
-      {"refuse", Policy::refuse}, {"drop", Policy::drop}, {"keep", Policy::keep}};
-  const auto found = known.find(std::string(name));
-  if (found != known.end()) return found->second;
-  throw UsageError({.what = "unknown policy '" + std::string(name) + "'",
-                    .advice = base::name_advice(name, {"refuse", "drop", "keep"})});
 }
 
 std::string line_of(const Finding& finding) {

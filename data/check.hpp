@@ -15,8 +15,8 @@ namespace elrom::ingest {
 
 enum class Severity {
   note,        ///< worth knowing; nothing to do
-  suspicious,  ///< probably a mistake
-  wrong,       ///< cannot be used
+  suspicious,  ///< may be right, and should be looked at
+  wrong,       ///< cannot be right as it is: unreadable, not finite, a mistaken unit, a case twice
 };
 [[nodiscard]] std::string_view name_of(Severity severity);
 
@@ -58,13 +58,8 @@ class Checker {
   bool same_mesh_ = true;
 };
 
-/// Findings on one of the cases (or on the pair it is part of) that are at least suspicious.
+/// Findings on one of the cases that are at least suspicious.
 [[nodiscard]] std::vector<Finding> findings_on(std::span<const Finding> findings, std::string_view case_name);
-
-/// What import does with a suspicious case.
-enum class Policy { refuse, drop, keep };
-/// @throws UsageError with the known names
-[[nodiscard]] Policy policy_of(std::string_view name);
 
 /// "{kind, format, program, cases, findings, counts}" (data/FORMATS.md, "check report").
 [[nodiscard]] std::string to_json(const Checker& checker, std::span<const Finding> findings);

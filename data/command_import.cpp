@@ -6,15 +6,15 @@
 #include "elrom/base/app.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/ingest/import.hpp"
+#include "import_checked.hpp"
 
 namespace elrom::ingest {
 
 namespace {
 
-int run_import(const ImportOptions& options) {
+int run_import(const ImportOptions& options, const std::string& policy) {
   const auto log = make_console_log();
-  const auto summary = import_cases(options, *log, base::interrupt_token());
+  const auto summary = import_checked(options, policy_of(policy), *log, base::interrupt_token());
   fmt::print("{} {} added to {}, which now holds {}\n", summary.n_added,
              summary.n_added == 1 ? "case" : "cases", options.store.string(), summary.n_cases);
   if (summary.n_added == 0) return 0;
@@ -60,8 +60,16 @@ void add_import(CLI::App& program, Work& chosen) {
   command->add_option("--threads", options->n_threads, "Processor threads")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  auto policy = std::make_shared<std::string>("refuse");
+  command
+      ->add_option("--on-suspicious", *policy,
+                   "A case that cannot be right beside the others (mistaken unit, the same case twice): "
+                   "refuse everything, drop that case, or keep it with a warning")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"refuse", "drop", "keep"}));
   command->add_option("FILE", options->files, "CFD results, one a case")->required()->type_name("FILE...");
-  command->callback([options, &chosen] { chosen = [options] { return run_import(*options); }; });
+  command->callback(
+      [options, policy, &chosen] { chosen = [options, policy] { return run_import(*options, *policy); }; });
 }
 
 }  // namespace elrom::ingest

@@ -17,6 +17,7 @@ int run(int argc, char** argv) {
   elrom::ingest::Work chosen;
   elrom::ingest::add_import(program, chosen);
   elrom::ingest::add_inspect(program, chosen);
+  elrom::ingest::add_check(program, chosen);
   elrom::ingest::add_mesh(program, chosen);
   // GEN
   program.footer(

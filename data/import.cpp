@@ -110,6 +110,7 @@ class Import {
                      .total = static_cast<std::int64_t>(options_.files.size()),
                      .unit = "cases"});
     }
+    if (options_.confirm) options_.confirm();
     if (writer_ && summary_.n_added > 0) writer_->commit();
     for (auto& error : summary_.mean_error) error /= static_cast<double>(summary_.n_added);
     summary_.n_cases += summary_.n_added;
@@ -141,7 +142,9 @@ class Import {
       (void)conform_fields(one, summary_.fields);  // a first case that lacks a field begins no file
       open_writer();
     }
-    writer_->add(resample(one));
+    const auto snapshot = resample(one);
+    if (options_.watch) options_.watch(snapshot, mesh_, schema_, summary_.fields);
+    writer_->add(snapshot);
     ++summary_.n_added;
   }
 

@@ -8,7 +8,6 @@
 
 #include "../../data/outliers.hpp"
 #include "../../data/unit_mistakes.hpp"
-#include "elrom/base/error.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -190,10 +189,6 @@ TEST(Check, ReportIsJsonWithEveryFinding) {
   EXPECT_THAT(text, AllOf(HasSubstr("\"kind\": \"elrom-check\""),
                           HasSubstr("\"" + shipped()[0].record.inputs.name + "\""),
                           HasSubstr("\"case\": \"b.h5\""), HasSubstr("\"wrong\": 1")));
-}
-
-TEST(Check, UnknownPolicyIsAUsageErrorWithAHint) {
-  EXPECT_THAT([] { (void)policy_of("refues"); }, ::testing::ThrowsMessage<UsageError>(HasSubstr("'refuse'")));
 }
 
 }  // namespace

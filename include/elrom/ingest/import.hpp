@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -25,6 +26,12 @@ struct ImportOptions {
   /// Called for every case as read; throws to refuse it, gives false to leave it out. Empty: every case is
   /// taken.
   std::function<bool(const CfdCase&)> accept = {};
+  /// Sees every case as it enters the store, on the reduced mesh. Empty: nobody looks.
+  std::function<void(const field::Snapshot&, const field::Mesh&, const field::InputSchema&,
+                     std::span<const field::FieldInfo>)>
+      watch = {};
+  /// Called once before the store is replaced; throws to leave it as it was.
+  std::function<void()> confirm = {};
 };
 
 struct ImportSummary {
