@@ -45,29 +45,32 @@ std::vector<BundleFile> peers_of(const fs::path& directory) {
   return peers;
 }
 
-// Every number in timing.json under its path of keys joined by '/': the layout belongs to the trainer.
-void flatten(const nlohmann::json& node, const std::string& prefix, std::map<std::string, double>& seconds) {
-  if (node.is_number() && prefix != "format") seconds[prefix] = node.get<double>();
-  if (!node.is_object()) return;
-  for (const auto& [key, value] : node.items())
-    flatten(value, prefix.empty() ? key : prefix + "/" + key, seconds);
+// "stages" and "methods" of timing.json: a number each, or an object with "seconds".
+std::map<std::string, double> seconds_of(const nlohmann::json& root, const char* part) {
+  std::map<std::string, double> seconds;
+  if (!root.is_object() || !root.contains(part) || !root.at(part).is_object()) return seconds;
+  for (const auto& [name, value] : root.at(part).items()) {
+    if (value.is_number()) seconds[name] = value.get<double>();
+    if (value.is_object() && value.contains("seconds") && value["seconds"].is_number())
+      seconds[name] = value["seconds"].get<double>();
+  }
+  return seconds;
 }
 
-std::map<std::string, double> stage_seconds(const fs::path& file) {
-  std::map<std::string, double> seconds;
-  if (!fs::exists(file)) return seconds;
+// The last run that reused nothing tells what the study takes; later ones only what was left to do.
+void read_timing(StudyFiles& study, const std::string& model_method) {
+  const auto file = study.directory / "timing.json";
+  if (!fs::exists(file)) return;
   const auto root = nlohmann::json::parse(base::read_text(file), nullptr, false);
   if (root.is_discarded()) throw InputError({"not a JSON file", file.string()});
-  flatten(root, "", seconds);
-  return seconds;
-}
-
-// Seconds spent on everything whose name ends in one of a peer's spellings ("peer/pod_gp", "peers/pod_gp").
-std::optional<double> peer_seconds(const std::map<std::string, double>& stages, const std::string& method) {
-  std::optional<double> seconds;
-  for (const auto& [stage, value] : stages)
-    if (stage.ends_with("/" + method) || stage == method) seconds = seconds.value_or(0) + value;
-  return seconds;
+  const bool has_full_run =
+      root.is_object() && root.contains("from_nothing") && root["from_nothing"].is_object();
+  study.stage_seconds = seconds_of(has_full_run ? root["from_nothing"] : root, "stages");
+  const auto methods = seconds_of(root, "methods");
+  for (auto& bundle : study.bundles) {
+    const auto found = methods.find(&bundle == &study.bundles.front() ? model_method : bundle.name);
+    if (found != methods.end()) bundle.train_seconds = found->second;
+  }
 }
 
 }  // namespace
@@ -92,13 +95,9 @@ StudyFiles open_study(const fs::path& directory, const std::optional<fs::path>& 
   for (const auto* part : {&split.train, &split.validation, &split.test})
     files.building.insert(files.building.end(), part->begin(), part->end());
   files.held_out = split.held_out;
-  files.stage_seconds = stage_seconds(directory / "timing.json");
   files.bundles.push_back({.name = "ELROM", .path = model});
   for (auto& peer : peers_of(directory)) files.bundles.push_back(std::move(peer));
-  for (auto& bundle : files.bundles)
-    if (bundle.name != "ELROM") bundle.train_seconds = peer_seconds(files.stage_seconds, bundle.name);
-  if (const auto total = files.stage_seconds.find("total"); total != files.stage_seconds.end())
-    files.bundles.front().train_seconds = total->second;
+  read_timing(files, study::read_settings(settings_file(directory)).method);
   return files;
 }
 

@@ -1,5 +1,6 @@
 #include "field_stage.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +50,7 @@ Json accuracy_of(const std::string& name, const AutoFit& fit) {
 }
 
 io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& context) {
+  const auto begin = std::chrono::steady_clock::now();
   const auto& data = request.data;
   const auto rows = math::all_rows(data.cases->n_cases());
   const auto fit = request.name == "auto"
@@ -61,6 +63,8 @@ io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& co
   }
   fit.model->save(file, "model");
   file.set_text("accuracy", accuracy_of(request.name, fit).dump());
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  file.set_text("seconds", base::number(taken.count()));
   return file;
 }
 
@@ -88,6 +92,10 @@ std::shared_ptr<const model::Uncertainty> FieldStage::uncertainty() const {
 double FieldStage::nrmse() const {
   const auto value = Json::parse(accuracy())["nrmse"];
   return value.is_number() ? value.get<double>() : NAN;
+}
+
+double FieldStage::seconds() const {
+  return file.has_text("seconds") ? base::to_double(file.text("seconds")).value_or(NAN) : NAN;
 }
 
 FieldStage fit_field(const FieldStageRequest& request, const StageCache& cache, const FitContext& context) {

@@ -16,6 +16,9 @@ struct FieldStage {
   [[nodiscard]] std::shared_ptr<const model::FieldModel> model() const;
   [[nodiscard]] std::shared_ptr<const model::Uncertainty> uncertainty() const;  ///< nullptr: fitted without
   [[nodiscard]] double nrmse() const;  ///< cross-validated; NaN: fitted without
+  /// What it took when it was fitted, cache hits of later runs notwithstanding; not part of a bundle, whose
+  /// bytes repeat.
+  [[nodiscard]] double seconds() const;
   /// {"method", "nrmse", "candidates": [{"name", "nrmse", "weight"}]}, for the bundle.
   [[nodiscard]] const std::string& accuracy() const { return file.text("accuracy"); }
 };

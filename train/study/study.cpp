@@ -172,8 +172,12 @@ struct Study::Impl {
                            base::rounded(main.nrmse(), 3)));
     });
     for (const auto& [name, of_method] : stages) write_bundle(name, of_method, model_path);
+    std::map<std::string, double> method_seconds;
+    for (const auto& [name, of_method] : stages)
+      for (const auto& [field, stage] : of_method) method_seconds[name] += stage.seconds();
     write_timing(folder / "timing.json", cache.clock().entries(),
-                 std::chrono::duration<double>(Clock::now() - begin).count(), settings.n_threads());
+                 std::chrono::duration<double>(Clock::now() - begin).count(), settings.n_threads(),
+                 method_seconds);
     return outcomes;
   }
 

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/atomic_file.hpp"
@@ -25,7 +26,7 @@ double peak_rss_gib() {
 }
 
 void write_timing(const std::filesystem::path& path, const std::map<std::string, StageClock::Entry>& entries,
-                  double total_seconds, int n_threads) {
+                  double total_seconds, int n_threads, const std::map<std::string, double>& methods) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   std::int64_t reused = 0;
   for (const auto& [stage, entry] : entries) {
@@ -39,6 +40,8 @@ void write_timing(const std::filesystem::path& path, const std::map<std::string,
                               {"total_seconds", total_seconds},
                               {"peak_rss_gib", peak_rss_gib()},
                               {"stages", stages}};
+  for (const auto& [method, seconds] : methods)
+    if (std::isfinite(seconds)) json["methods"][method] = seconds;
   json["from_nothing"] = reused == 0
                              ? nlohmann::ordered_json{{"total_seconds", total_seconds}, {"stages", stages}}
                              : earlier_full_run(path);

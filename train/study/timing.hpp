@@ -11,7 +11,8 @@ namespace elrom::study {
 [[nodiscard]] double peak_rss_gib();
 
 /// Keeps, in "from_nothing", the seconds of the last run that reused nothing.
+/// @param methods seconds that each method took when it was fitted, however long ago; NaN is left out
 void write_timing(const std::filesystem::path& path, const std::map<std::string, StageClock::Entry>& entries,
-                  double total_seconds, int n_threads);
+                  double total_seconds, int n_threads, const std::map<std::string, double>& methods = {});
 
 }  // namespace elrom::study
