@@ -1,0 +1,176 @@
+// No exception leaves this file: each becomes a status and a line of text kept for the calling thread.
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <new>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/base/version.hpp"
+#include "elrom/model/elrom.h"
+#include "elrom/model/predictor.hpp"
+
+using elrom::model::Predictor;
+
+struct elrom_predictor {
+  Predictor predictor;
+  mutable std::mutex mutex;
+  mutable std::vector<std::unique_ptr<Predictor::Scratch>> idle;  //!< scratch memory of calls that have ended
+
+  elrom_predictor(const char* bundle, elrom::model::Selection selection)
+      : predictor(bundle, std::move(selection)) {}
+};
+
+namespace {
+
+thread_local std::string last_error;
+
+int failed(elrom::ExitStatus status, const char* message) noexcept {
+  try {
+    last_error = message;
+  } catch (...) {
+    last_error.clear();
+  }
+  return static_cast<int>(status);
+}
+
+template <class Work>
+int guarded(const Work& work) noexcept {
+  try {
+    work();
+    return 0;
+  } catch (const elrom::Error& error) {
+    return failed(error.status(), error.what());
+  } catch (const std::exception& error) {
+    return failed(elrom::ExitStatus::internal, error.what());
+  } catch (...) {
+    return failed(elrom::ExitStatus::internal, "unknown failure");
+  }
+}
+
+void need(bool given, const char* what) {
+  if (!given) throw elrom::UsageError(std::string("null pointer: ") + what);
+}
+
+/// Scratch memory for one call, given back at its end, so that repeated calls allocate nothing.
+class Loan {
+ public:
+  explicit Loan(const elrom_predictor& owner) : owner_(owner) {
+    const std::scoped_lock lock(owner_.mutex);
+    if (owner_.idle.empty()) {
+      scratch_ = std::make_unique<Predictor::Scratch>();
+    } else {
+      scratch_ = std::move(owner_.idle.back());
+      owner_.idle.pop_back();
+    }
+  }
+  ~Loan() {
+    const std::scoped_lock lock(owner_.mutex);
+    try {
+      owner_.idle.push_back(std::move(scratch_));
+    } catch (...) {  // then the next call makes a new one
+    }
+  }
+  Loan(const Loan&) = delete;
+  Loan& operator=(const Loan&) = delete;
+  Predictor::Scratch& scratch() { return *scratch_; }
+
+ private:
+  const elrom_predictor& owner_;
+  std::unique_ptr<Predictor::Scratch> scratch_;
+};
+
+std::span<const double> inputs_of(const elrom_predictor& predictor, const double* inputs) {
+  need(inputs != nullptr, "inputs");
+  return {inputs, predictor.predictor.bundle().info().schema.size()};
+}
+
+}  // namespace
+
+const char* elrom_last_error(void) { return last_error.c_str(); }
+const char* elrom_version(void) {
+  static const std::string text(elrom::version());
+  return text.c_str();
+}
+
+elrom_predictor* elrom_open(const char* bundle, const char* fields) {
+  elrom_predictor* opened = nullptr;
+  guarded([&] {
+    need(bundle != nullptr, "bundle");
+    elrom::model::Selection selection;
+    if (fields != nullptr && *fields != '\0') {
+      for (const auto& name : elrom::base::split(fields, ','))
+        selection.fields.push_back(elrom::base::trim(name));
+    }
+    opened = new elrom_predictor(bundle, std::move(selection));
+  });
+  return opened;
+}
+
+void elrom_close(elrom_predictor* predictor) { delete predictor; }
+
+size_t elrom_n_inputs(const elrom_predictor* p) { return p ? p->predictor.bundle().info().schema.size() : 0; }
+size_t elrom_n_fields(const elrom_predictor* p) { return p ? p->predictor.fields().size() : 0; }
+size_t elrom_n_planes(const elrom_predictor* p) { return p ? p->predictor.planes().size() : 0; }
+size_t elrom_n_columns(const elrom_predictor* p) { return p ? p->predictor.n_columns() : 0; }
+
+const char* elrom_input_name(const elrom_predictor* p, size_t i) {
+  return i < elrom_n_inputs(p) ? p->predictor.bundle().info().schema[i].name.c_str() : nullptr;
+}
+const char* elrom_input_unit(const elrom_predictor* p, size_t i) {
+  return i < elrom_n_inputs(p) ? p->predictor.bundle().info().schema[i].unit.c_str() : nullptr;
+}
+const char* elrom_field_name(const elrom_predictor* p, size_t i) {
+  return i < elrom_n_fields(p) ? p->predictor.fields()[i].name.c_str() : nullptr;
+}
+const char* elrom_field_unit(const elrom_predictor* p, size_t i) {
+  return i < elrom_n_fields(p) ? p->predictor.fields()[i].unit.c_str() : nullptr;
+}
+
+int elrom_cell_centres(const elrom_predictor* p, double* xyz) {
+  return guarded([&] {
+    need(p != nullptr && xyz != nullptr, "predictor or xyz");
+    const auto mesh = p->predictor.bundle().mesh();
+    std::copy_n(mesh.centre.data(), mesh.centre.size(), xyz);
+  });
+}
+
+int elrom_read_case(const elrom_predictor* p, const char* cases, const char* name, double* inputs) {
+  return guarded([&] {
+    need(p != nullptr && cases != nullptr && name != nullptr && inputs != nullptr,
+         "an argument of elrom_read_case");
+    const auto table = elrom::field::read_cases(cases, p->predictor.bundle().info().schema);
+    std::vector<std::string> names;
+    for (const auto& item : table) {
+      names.push_back(item.name);
+      if (item.name != name) continue;
+      std::copy(item.values.begin(), item.values.end(), inputs);
+      return;
+    }
+    throw elrom::InputError({.what = "no case '" + std::string(name) + "'",
+                             .where = cases,
+                             .advice = elrom::base::name_advice(name, names)});
+  });
+}
+
+int elrom_predict(const elrom_predictor* p, const double* inputs, float* values, int n_threads) {
+  return guarded([&] {
+    need(p != nullptr && values != nullptr, "predictor or values");
+    if (n_threads < 1) throw elrom::UsageError("n_threads must be 1 or more");
+    Loan loan(*p);
+    p->predictor.predict(inputs_of(*p, inputs), {values, p->predictor.size()}, {}, loan.scratch(), n_threads);
+  });
+}
+
+int elrom_validity(const elrom_predictor* p, const double* inputs, int* verdict, char* reason,
+                   size_t reason_size) {
+  return guarded([&] {
+    need(p != nullptr && verdict != nullptr, "predictor or verdict");
+    const auto assessment = p->predictor.guard().assess(inputs_of(*p, inputs));
+    *verdict = static_cast<int>(assessment.verdict);
+    if (reason == nullptr || reason_size == 0) return;
+    const std::size_t n = std::min(reason_size - 1, assessment.reason.size());
+    std::memcpy(reason, assessment.reason.data(), n);
+    reason[n] = '\0';
+  });
+}
