@@ -19,7 +19,7 @@ int run(int argc, char** argv) {
   elrom::ingest::add_inspect(program, chosen);
   elrom::ingest::add_check(program, chosen);
   elrom::ingest::add_mesh(program, chosen);
-  // GEN
+  elrom::ingest::add_generate(program, chosen);
   program.footer(
       "Exit status: 0 done, 2 wrong command line, 3 wrong input, 1 trouble of the machine, 130 interrupted.");
   try {

@@ -137,6 +137,11 @@ class Import {
     if (table_) complete_inputs(one, *table_);
     if (options_.accept && !options_.accept(one)) return;
     if (!writer_) {
+      if (one.schema.size() == 0) {
+        throw InputError({.what = "no boundary conditions",
+                          .where = one.record.source,
+                          .advice = "give them in a table by --cases"});
+      }
       schema_ = one.schema;
       summary_.fields = fields_of_new_store(options_, one);
       (void)conform_fields(one, summary_.fields);  // a first case that lacks a field begins no file
