@@ -1,0 +1,163 @@
+#include <sys/mount.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+
+#include "campaign.hpp"
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/io/tensor_file.hpp"
+#include "process.hpp"
+
+namespace elrom::faults {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Runs the command with its n-th write failing, for growing n, until it no longer reaches the n-th.
+/// @param state_is_good looks at what is left, after every run
+void fail_every_write(const std::string& name, const std::vector<std::string>& command, const Workshop& shop,
+                      const std::function<void()>& prepare,
+                      const std::function<bool(bool succeeded)>& state_is_good, Tally& tally) {
+  const std::size_t most = shop.times(2000, 12);
+  // Steps grow: the first writes of a program are the delicate ones, later ones are much alike.
+  for (std::size_t n = 1, tried = 0; tried < most; n += 1 + n / 8, ++tried) {
+    prepare();
+    const auto exit =
+        run(command, {{"LD_PRELOAD", shop.preload.string()}, {"ELROM_FAIL_AT", std::to_string(n)}});
+    const bool succeeded = exit.status == 0;
+    const auto story = name + ", write " + std::to_string(n) + ": status " + std::to_string(exit.status) +
+                       ", signal " + std::to_string(exit.signal) + ", " + exit.output.substr(0, 300);
+    tally.count(exit.signal == 0 && !exit.timed_out && state_is_good(succeeded), story);
+    if (succeeded) return;
+  }
+}
+
+bool whole_or_absent(const fs::path& bundle) {
+  if (!fs::exists(bundle)) return true;
+  try {
+    io::TensorFile::open(bundle).verify_all();
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// A file system of a few pages that fills at once; gone with the object.
+class TinyDisk {
+ public:
+  TinyDisk(const fs::path& folder, const std::string& size) : folder_(folder) {
+    fs::create_directories(folder);
+    mounted_ = mount("tmpfs", folder.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
+    if (!mounted_) reason_ = std::strerror(errno);
+  }
+  ~TinyDisk() {
+    if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  TinyDisk(const TinyDisk&) = delete;
+  TinyDisk& operator=(const TinyDisk&) = delete;
+  [[nodiscard]] bool mounted() const { return mounted_; }
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  fs::path folder_;
+  bool mounted_ = false;
+  std::string reason_;
+};
+
+}  // namespace
+
+Tally failing_writes(const Workshop& shop) {
+  Tally tally;
+  const auto store = shop.folder / "failing.h5", old_store = shop.folder / "failing_old.h5";
+  if (run(shop.import_command(old_store, shop.case_files(8))).status != 0)
+    throw std::runtime_error("cannot import");
+  fail_every_write(
+      "import", shop.import_command(store, shop.case_files(3, 8)), shop,
+      [&] { fs::copy_file(old_store, store, fs::copy_options::overwrite_existing); },
+      [&](bool succeeded) {
+        const long state = store_state(store);
+        return succeeded ? state == 11 : state == 8 || state == 11;
+      },
+      tally);
+
+  const auto study = shop.folder / "failing_study";
+  shop.make_study(study, 10);
+  fail_every_write(
+      "training", shop.train_command(study), shop, [] {},
+      [&](bool succeeded) {
+        return whole_or_absent(study / "model.elrom") && (!succeeded || fs::exists(study / "model.elrom"));
+      },
+      tally);
+
+  const auto output = shop.folder / "failing_predictions";
+  fail_every_write(
+      "prediction", shop.predict_command(study / "model.elrom", output), shop,
+      [&] { fs::remove_all(output); },
+      [&](bool succeeded) {
+        if (succeeded || !fs::exists(output)) return true;
+        // Temporary files are cleared away; whole predictions may stand.
+        return std::none_of(fs::directory_iterator(output), fs::directory_iterator{},
+                            [](const auto& entry) { return entry.path().extension() == ".tmp"; });
+      },
+      tally);
+  return tally;
+}
+
+Tally disk_full(const Workshop& shop) {
+  Tally tally;
+  const auto folder = shop.folder / "tiny_disk";
+  for (const std::string size : {"64k", "400k", "1500k"}) {
+    const TinyDisk disk(folder, size);
+    if (!disk.mounted()) {
+      tally.skipped = "no small file system may be mounted here (" + disk.reason() + ")";
+      return tally;
+    }
+    const auto store = folder / "store.h5";
+    const auto exit = run(shop.import_command(store, shop.case_files(10)));
+    const long state = store_state(store);
+    tally.count(
+        exit.signal == 0 && (exit.status == 0 ? state == 10 : state == -1),
+        "import to a disk of " + size + ": status " + std::to_string(exit.status) + ", " + exit.output);
+  }
+  return tally;
+}
+
+Tally two_at_once(const Workshop& shop) {
+  Tally tally;
+  const auto store = shop.folder / "shared.h5";
+  for (std::size_t i = 0; i < shop.times(20, 3); ++i) {
+    fs::remove(store);
+    Process first(shop.import_command(store, shop.case_files(8)));
+    Process second(shop.import_command(store, shop.case_files(8, 8)));
+    // Readers see the old file or the new one, never a half.
+    long seen = -1;
+    bool whole = true;
+    for (int k = 0; k < 20; ++k) {
+      seen = store_state(store);
+      whole = whole && seen != -2;
+      usleep(10000);
+    }
+    const auto a = first.wait(), b = second.wait();
+    const long state = store_state(store);
+    const long wanted = (a.status == 0 ? 8 : 0) + (b.status == 0 ? 8 : 0);
+    const auto refused_well = [](const Exit& e) {
+      return e.status == 0 || e.output.find("another process") != std::string::npos;
+    };
+    tally.count(whole, "a reader saw half a store");
+    tally.count(wanted > 0 && state == wanted && refused_well(a) && refused_well(b),
+                "two imports: state " + std::to_string(state) + "\n" + a.output + b.output);
+  }
+  const auto study = shop.folder / "shared_study";
+  shop.make_study(study, 10);
+  Process first(shop.train_command(study)), second(shop.train_command(study));
+  const auto a = first.wait(), b = second.wait();
+  tally.count((a.status == 0) != (b.status == 0) || (a.status == 0 && b.status == 0),
+              "two trainings: " + a.output + b.output);
+  tally.count(whole_or_absent(study / "model.elrom") && fs::exists(study / "model.elrom"),
+              "two trainings: no bundle");
+  return tally;
+}
+
+}  // namespace elrom::faults

@@ -1,0 +1,98 @@
+// The fault campaign as one program; see tests/faults/run.
+
+#include "campaign.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/app.hpp"
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/field/mesh.hpp"
+#include "fuzz_inputs.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace elrom::faults {
+namespace {
+
+struct Section {
+  std::string key, what;
+  std::function<Tally(const Workshop&)> run;
+};
+
+const std::vector<Section>& sections() {
+  static const std::vector<Section> all = {
+      {"kills", "kill -9 at random moments of import, training, prediction", kills},
+      {"truncations", "files cut at many lengths are refused by name", truncations},
+      {"flipped_bytes", "changed bytes of a bundle are found", flipped_bytes},
+      {"unit_mistakes", "slips between units in the shipped cases are caught", unit_mistakes},
+      {"hard_cases", "hard data ends in finite numbers or a clear error", hard_cases},
+      {"failing_writes", "failing writes leave old or new state", failing_writes},
+      {"disk_full", "a full disk leaves old or new state", disk_full},
+      {"two_at_once", "two programs on one store or study; readers meanwhile", two_at_once},
+      {"fuzz", "hostile bundles, tables and cases are refused", fuzz_inputs},
+  };
+  return all;
+}
+
+void print(const Section& section, const Tally& tally) {
+  if (!tally.skipped.empty()) {
+    fmt::print("{:<16}skipped: {}\n", section.key, tally.skipped);
+  } else {
+    fmt::print("{:<16}{} of {}  {}\n", section.key, tally.passed, tally.of, section.what);
+  }
+  for (const auto& failure : tally.failures) fmt::print("    {}\n", failure);
+  std::fflush(stdout);
+}
+
+/// Unit mistakes may hide in a case's own deviation; all else must pass whole.
+bool good_enough(const Section& section, const Tally& tally) {
+  constexpr double caught = 0.95;
+  if (section.key != "unit_mistakes") return tally.clean();
+  return static_cast<double>(tally.passed) >= caught * static_cast<double>(tally.of);
+}
+
+int run_campaign(Workshop shop, const std::vector<std::string>& only, const std::string& json) {
+  const test::TemporaryFolder folder;
+  shop.folder = folder.path();
+  field::write_mesh(shop.mesh(), field::make_furnace_mesh({}, 5, 6, 8));
+  nlohmann::ordered_json report{{"small", shop.small}};
+  bool good = true;
+  for (const auto& section : sections()) {
+    if (!only.empty() && std::find(only.begin(), only.end(), section.key) == only.end()) continue;
+    const auto tally = section.run(shop);
+    print(section, tally);
+    good = good && good_enough(section, tally);
+    report[section.key] = {{"passed", tally.passed}, {"of", tally.of}};
+    if (!tally.skipped.empty()) report[section.key]["skipped"] = tally.skipped;
+    if (section.key == "fuzz") report["fuzz_inputs"] = tally.of;
+  }
+  if (!json.empty()) base::write_text(json, report.dump(2) + "\n");
+  return good ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace elrom::faults
+
+int main(int argc, char** argv) {
+  CLI::App app("Faults done to ELROM's programs and files, and how much of it they survive.");
+  elrom::faults::Workshop shop;
+  shop.programs = ELROM_BIN_DIR;
+  shop.preload = ELROM_PRELOAD;
+  shop.source = ELROM_SOURCE_DIR;
+  std::string json;
+  std::vector<std::string> only;
+  app.add_flag("--small", shop.small, "A short version: about a minute");
+  app.add_option("--json", json, "Write the tallies to this file")->type_name("FILE");
+  app.add_option("--only", only, "Only these sections (kills, truncations ...)")->delimiter(',');
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(elrom::ExitStatus::usage);
+  }
+  return elrom::base::run_app("fault_campaign",
+                              [&] { return elrom::faults::run_campaign(shop, only, json); });
+}

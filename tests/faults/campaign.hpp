@@ -1,0 +1,70 @@
+#pragma once
+// The fault campaign: what is done to ELROM's programs and files, and how much of it they survive.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "elrom/base/random.hpp"
+
+namespace elrom::faults {
+
+/// n of n.
+struct Tally {
+  std::size_t passed = 0, of = 0;
+  std::vector<std::string> failures;  ///< what went wrong, one line each (the first few)
+  std::string skipped;                ///< why nothing was done; empty: it was
+
+  /// @param failure what to say when it did not pass
+  void count(bool good, const std::string& failure);
+  [[nodiscard]] bool clean() const { return passed == of; }
+};
+
+/// Where things are, and a small study to do harm to.
+struct Workshop {
+  std::filesystem::path programs;  ///< folder of elrom-data, elrom-train, elrom-predict
+  std::filesystem::path preload;   ///< failing_calls library
+  std::filesystem::path source;    ///< the repository
+  std::filesystem::path folder;    ///< for files
+  bool small = false;
+  base::Seed seed{20231};
+
+  [[nodiscard]] std::string program(const std::string& name) const { return (programs / name).string(); }
+  [[nodiscard]] std::size_t times(std::size_t full, std::size_t few) const { return small ? few : full; }
+  [[nodiscard]] std::filesystem::path mesh() const { return folder / "mesh.h5"; }
+  /// Shipped training cases, (n).
+  [[nodiscard]] std::vector<std::string> case_files(std::size_t n, std::size_t first = 0) const;
+  [[nodiscard]] std::vector<std::string> import_command(const std::filesystem::path& store,
+                                                        const std::vector<std::string>& files) const;
+  /// A study with a store of n_cases on a coarse mesh; networks are left out so that it trains in a second.
+  void make_study(const std::filesystem::path& study, std::size_t n_cases) const;
+  [[nodiscard]] std::vector<std::string> train_command(const std::filesystem::path& study) const;
+  [[nodiscard]] std::vector<std::string> predict_command(const std::filesystem::path& bundle,
+                                                         const std::filesystem::path& output) const;
+};
+
+/// kill -9 at random moments of import, training and prediction; afterwards old or new state, and the next
+/// run ends.
+Tally kills(const Workshop& workshop);
+/// Bundles, stores and exports cut at many lengths are refused with exit status 3 or an InputError.
+Tally truncations(const Workshop& workshop);
+/// Every byte of a bundle, changed, is found by its digests.
+Tally flipped_bytes(const Workshop& workshop);
+/// Every case of the shipped ones, every slip between two units, one at a time.
+Tally unit_mistakes(const Workshop& workshop);
+/// The table of tests/stability.
+Tally hard_cases(const Workshop& workshop);
+/// The n-th write, truncation, fsync or rename fails; afterwards old or new state, and no program dies by a
+/// signal.
+Tally failing_writes(const Workshop& workshop);
+/// The same on a file system that is really full; skipped where none may be mounted.
+Tally disk_full(const Workshop& workshop);
+/// Two programs on one store or study: one works, the other waits or refuses; readers see whole files.
+Tally two_at_once(const Workshop& workshop);
+
+/// The state of a store after trouble: its cases when it opens and reads whole, -1 when it is not there, -2
+/// when broken.
+[[nodiscard]] long store_state(const std::filesystem::path& store);
+
+}  // namespace elrom::faults
