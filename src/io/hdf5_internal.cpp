@@ -6,6 +6,10 @@
 namespace elrom::io::detail {
 
 void quiet() {
+  // Every file is closed by its owner. The library's own clearing-up at exit would crash on a file that could
+  // not be written (a full disk), after the error has been told.
+  static const bool no_exit_handler = H5dont_atexit() >= 0;
+  (void)no_exit_handler;
   thread_local const bool done = (H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), true);
   (void)done;
 }
@@ -19,7 +23,12 @@ std::string last_cause() {
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &cause);
   std::replace(cause.begin(), cause.end(), '\n', ' ');
-  return cause;
+  // The library's file driver tells times, addresses and sizes; the system's own words in it are what helps.
+  constexpr std::string_view quoted = "error message = '";
+  const auto begin = cause.find(quoted);
+  if (begin == std::string::npos) return cause;
+  const auto text = cause.substr(begin + quoted.size());
+  return text.substr(0, text.find('\''));
 }
 
 hid_t readable(hid_t result, std::string_view what, const std::string& where) {
