@@ -6,6 +6,7 @@
 #include "elrom/base/text.hpp"
 #include "elrom/study/kernel_method.hpp"
 #include "elrom/study/peers.hpp"
+#include "elrom/study/pod_mlp.hpp"
 
 namespace elrom::study {
 namespace {
@@ -15,6 +16,13 @@ bool needs_trainer(const std::string& name) { return name == "networks" || name 
 NotBuiltError no_trainer(const std::string& name) {
   return NotBuiltError({.what = "method " + name + " needs LibTorch, which this build left out",
                         .advice = "build with -DELROM_TORCH=ON, or choose another method"});
+}
+
+PodMlpOptions pod_mlp_options(const Settings& settings) {
+  PodMlpOptions options;
+  options.builds = settings.fit.builds;
+  options.mirrors = settings.networks.mirrors && settings.symmetry.enabled;
+  return options;
 }
 
 }  // namespace
@@ -37,6 +45,7 @@ std::unique_ptr<Method> MethodSet::make(const std::string& name) const {
   if (needs_trainer(name) && !has_networks()) throw no_trainer(name);
   if (name == "networks")
     return std::make_unique<NetworksMethod>(settings_, toolbox_.trainer, cache_, trials_);
+  if (name == "pod_mlp") return make_pod_mlp(toolbox_.trainer, pod_mlp_options(settings_));
   auto method = toolbox_.make_method ? toolbox_.make_method(name, settings_) : nullptr;
   if (!method) throw UsageError({.what = "unknown method '" + name + "'", .where = "method"});
   return method;
