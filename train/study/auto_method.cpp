@@ -142,7 +142,7 @@ std::vector<double> blend_weights(const MatrixXd& error_gram) {
   // Drop the most negative weight until none is left: for a handful of candidates this is the optimum or next
   // to it.
   VectorXd weights = unconstrained(error_gram, members);
-  constexpr double negligible = 0.02;  // a member with less costs more to evaluate than it gives
+  constexpr double negligible = 0.1;  // a member with less costs more to evaluate than it gives
   for (Index least = 0; members.size() > 1 && weights.minCoeff(&least) < negligible;) {
     members.erase(members.begin() + least);
     weights = unconstrained(error_gram, members);

@@ -15,7 +15,7 @@ struct AutoOptions {
   std::size_t n_folds = 8;
   /// A blend must be better than its best member by this share of the member's error, or the member alone is
   /// taken: weights learned from few cases are noisy, and a single model predicts faster.
-  double least_gain = 0.01;
+  double least_gain = 0.02;
 };
 
 struct CandidateScore {
