@@ -17,6 +17,18 @@ std::filesystem::path lock_path(const std::filesystem::path& store) {
   return store.parent_path() / ("." + store.filename().string() + ".lock");
 }
 
+// Temporaries that killed writers left behind; the lock is held, so they are nobody's.
+const std::filesystem::path& without_remains(const std::filesystem::path& store) {
+  const auto prefix = "." + store.filename().string() + ".";
+  const auto folder = store.has_parent_path() ? store.parent_path() : std::filesystem::path(".");
+  std::error_code fault;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, fault)) {
+    const auto name = entry.path().filename().string();
+    if (name.starts_with(prefix) && name.ends_with(".tmp")) std::filesystem::remove(entry.path(), fault);
+  }
+  return store;
+}
+
 std::string content_digest(const MatrixF& fields) {
   return base::sha256(std::as_bytes(std::span(fields.data(), static_cast<std::size_t>(fields.size()))));
 }
@@ -137,7 +149,7 @@ SnapshotWriter::SnapshotWriter(const std::filesystem::path& path, const Mesh& me
                      schema.size(),
                      fields,
                      base::FileLock(lock_path(path)),
-                     base::AtomicFile(path),
+                     base::AtomicFile(without_remains(path)),
                      std::nullopt,
                      {}}) {
   if (std::filesystem::exists(path)) {

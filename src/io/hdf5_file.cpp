@@ -49,6 +49,16 @@ std::string place_of(const Hdf5Group& group, const std::string& name) {
          name.substr(name.starts_with('/') ? 1 : 0);
 }
 
+hid_t read_access() {
+  // Locked where the file system knows locks, so that a file under another program's pen is refused.
+  static const hid_t list = [] {
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_file_locking(access, true, true);
+    return access;
+  }();
+  return list;
+}
+
 Hdf5Id creation_list(const Shape& shape, const Hdf5Storage& storage) {
   Hdf5Id list(untimed(H5P_DATASET_CREATE));
   check(storage.chunk.size() == shape.size(), "chunk and shape differ in rank");
@@ -177,7 +187,7 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path, Access access) {
   if (!std::filesystem::is_regular_file(path, fault)) throw InputError("not a file: " + where);
   if (H5Fis_hdf5(path.c_str()) <= 0) throw InputError({.what = "not a readable HDF5 file", .where = where});
   const hid_t id = access == Access::edit ? H5Fopen(path.c_str(), H5F_ACC_RDWR, fast_access())
-                                          : H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+                                          : H5Fopen(path.c_str(), H5F_ACC_RDONLY, read_access());
   return Hdf5File(Hdf5Id(readable(id, "cannot open", where)), where);
 }
 

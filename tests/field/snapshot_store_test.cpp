@@ -1,6 +1,7 @@
 #include "elrom/field/snapshot_store.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include "elrom/base/digest.hpp"
@@ -80,6 +81,16 @@ TEST_F(Store, WithoutCommitTheOldStoreIsUntouched) {
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
     left.push_back(entry.path().filename());
   EXPECT_THAT(left, ::testing::UnorderedElementsAre("s.h5", ".s.h5.lock"));
+}
+
+TEST_F(Store, ClearsAwayWhatAKilledWriterLeft) {
+  const auto remains = folder_ / ".s.h5.12345.0.tmp", other = folder_ / ".other.h5.12345.0.tmp";
+  for (const auto& path : {remains, other}) std::ofstream(path) << "half";
+
+  write({{"a", 1}});
+
+  EXPECT_FALSE(std::filesystem::exists(remains));
+  EXPECT_TRUE(std::filesystem::exists(other));
 }
 
 TEST_F(Store, RefusesASecondCaseOfTheSameNameOrContent) {
