@@ -31,6 +31,7 @@ Json method_on_field(const AccuracyReport& report, const FieldAccuracy& field, s
   Json node{{"method", report.methods[m].file.name}};
   if (!method.available) return node;
   node["kind"] = method.kind;
+  if (!method.detail.empty()) node["detail"] = method.detail;
   node.update(scores(method.pooled));
   node["nrmse_without_noise"] = number(field.nrmse_without_noise(m));
   for (std::size_t i = 0; i < report.cases.size(); ++i) {

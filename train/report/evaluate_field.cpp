@@ -1,11 +1,16 @@
 #include "evaluate_field.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
 #include "elrom/model/banded_networks.hpp"
+#include "names.hpp"
 
 namespace elrom::report {
 namespace {
@@ -127,6 +132,19 @@ void measure_coverage(const FieldTask& task, const MatrixF& truth, FieldAccuracy
   }
 }
 
+// Members and weights, as the trainer left them in the bundle for people; empty for one member alone.
+std::string blend_text(const std::string& accuracy_json, const std::string& field) {
+  const auto root = nlohmann::json::parse(accuracy_json, nullptr, false);
+  if (!root.is_object() || !root.contains(field) || !root[field].contains("candidates")) return "";
+  std::vector<std::string> members;
+  for (const auto& candidate : root[field]["candidates"]) {
+    const double weight = candidate.value("weight", 0.0);
+    if (weight > 0)
+      members.push_back(fmt::format("{} {:.2f}", method_label(candidate.value("name", "")), weight));
+  }
+  return members.size() > 1 ? base::join(members, ", ") : "";
+}
+
 struct Range {
   double low, high;
 };
@@ -177,6 +195,8 @@ FieldAccuracy evaluate_field(const FieldTask& task, Figures* figures) {
     if (!result.methods.back().available) continue;
     const auto model = model::BundleReader(bundle.path).model(task.info.name, false);
     result.methods.back().kind = model->kind();
+    result.methods.back().detail =
+        blend_text(model::BundleReader(bundle.path).info().accuracy_json, task.info.name);
     const auto* networks = dynamic_cast<const model::BandedNetworks*>(model.get());
     if (networks != nullptr && result.submodels.empty())
       result.submodels = score_submodels(*networks, truth, predictions.back(), statistics);

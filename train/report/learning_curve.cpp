@@ -12,6 +12,8 @@
 #include "elrom/report/metrics.hpp"
 #include "elrom/report/study_files.hpp"
 #include "elrom/study/cross_validation.hpp"
+#include "elrom/study/settings.hpp"
+#include "elrom/study/study.hpp"
 #include "refit.hpp"
 
 namespace elrom::report {
@@ -38,14 +40,8 @@ Material gather(const StudyFiles& study) {
     if (!base::matches(name, "rep*")) material.scored.push_back(row_of(name));
   if (material.scored.empty() || material.building.size() < 4)
     throw UsageError("a learning curve needs at least four training cases and one held-out case");
-  auto& cases = material.cases;
-  cases.mesh = material.store.mesh();
-  cases.schema = material.store.schema();
-  cases.inputs = material.store.inputs(material.building);
-  for (const auto row : material.building) {
-    cases.names.push_back(material.store.cases()[row].inputs.name);
-    cases.loads.push_back(material.store.cases()[row].inputs.load);
-  }
+  material.cases = study::study_cases(material.store, study::read_settings(study.settings), material.building,
+                                      silent_log());
   return material;
 }
 
@@ -160,7 +156,8 @@ LearningCurve learning_curve(const LearningCurveOptions& options, Log& log, cons
   const auto fields = chosen_fields(material.store, bundle.info(), options.fields);
   LearningCurve curve{.study = study.name,
                       .method = options.method.empty() ? method_of(bundle) : options.method};
-  const auto method = make_method(curve.method, study, material.cases);
+  const auto method = make_method(curve.method);
+  if (is_simple_peer(curve.method)) material.cases.mirrors.clear();  // as a user would run it
   const auto sizes = subset_sizes(material.building.size(), options.n_points);
   const auto draws =
       orders(material.building.size(), std::max(1, options.n_repeats), base::Seed(options.seed));

@@ -73,9 +73,11 @@ std::string score_row(const std::string& name, const std::vector<double>& values
     cells +=
         fmt::format("<td class=\"mark{}{}\">{}</td>", m == 0 ? " own" : "", m == best ? " best" : "", text);
   }
-  const auto by = field != nullptr && !field->methods[0].kind.empty() ? field->methods[0].kind : "";
+  const auto by = field == nullptr                   ? std::string()
+                  : field->methods[0].detail.empty() ? method_label(field->methods[0].kind)
+                                                     : "blend: " + field->methods[0].detail;
   return fmt::format("<tr{}><th>{}</th>{}<td class=\"text\">{}</td></tr>", is_sum ? " class=\"sum\"" : "",
-                     escape(name), cells, escape(method_label(by)));
+                     escape(name), cells, escape(by));
 }
 
 std::string score_table(const AccuracyReport& report, const ScoreKind& kind) {

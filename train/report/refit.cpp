@@ -5,33 +5,35 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/study/kernel_method.hpp"
 #include "elrom/study/peers.hpp"
 
 namespace elrom::report {
-namespace {
 
-bool can_fit(const std::string& name) {
-  const auto& names = study::peer_names();
-  return std::find(names.begin(), names.end(), name) != names.end();
+std::vector<std::string> refittable_methods() {
+  auto names = study::peer_names();
+  names.push_back("kernel");
+  return names;
 }
 
-}  // namespace
-
 std::string method_of(const model::BundleReader& bundle) {
+  const auto known = refittable_methods();
   std::map<std::string, int> votes;
   for (const auto& info : bundle.info().fields) {
     const auto kind = bundle.model(info.name, false)->kind();
-    if (can_fit(kind)) ++votes[kind];
+    if (std::find(known.begin(), known.end(), kind) != known.end()) ++votes[kind];
   }
   const auto most = std::max_element(votes.begin(), votes.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == votes.end() ? "pod_gp" : most->first;
+  return most == votes.end() ? "kernel" : most->first;
 }
 
-std::unique_ptr<study::Method> make_method(const std::string& name, const StudyFiles&, study::CaseSet&) {
-  if (!can_fit(name))
+std::unique_ptr<study::Method> make_method(const std::string& name) {
+  if (name == "kernel") return study::make_kernel_method();
+  const auto known = refittable_methods();
+  if (std::find(known.begin(), known.end(), name) == known.end())
     throw UsageError({.what = "no method '" + name + "' that a learning curve can fit",
-                      .advice = base::name_advice(name, study::peer_names())});
+                      .advice = base::name_advice(name, known)});
   return study::make_peer(name);
 }
 

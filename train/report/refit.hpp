@@ -3,19 +3,18 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "elrom/model/bundle.hpp"
-#include "elrom/report/study_files.hpp"
 #include "elrom/study/method.hpp"
 
 namespace elrom::report {
 
-/// The method that answers for most fields of a bundle and can be fitted without the search: its kind, or
-/// "pod_gp".
+/// Methods that need no search: the peers and the kernel.
+[[nodiscard]] std::vector<std::string> refittable_methods();
+/// The one of them that answers for most fields of a bundle; "kernel" where none does.
 [[nodiscard]] std::string method_of(const model::BundleReader& bundle);
-/// @param cases gets the mirrors of the study where the method uses them
 /// @throws UsageError for a method that cannot be fitted here, with those that can
-[[nodiscard]] std::unique_ptr<study::Method> make_method(const std::string& name, const StudyFiles& study,
-                                                         study::CaseSet& cases);
+[[nodiscard]] std::unique_ptr<study::Method> make_method(const std::string& name);
 
 }  // namespace elrom::report

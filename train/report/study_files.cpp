@@ -89,7 +89,9 @@ StudyFiles open_study(const fs::path& directory, const std::optional<fs::path>& 
                         .found = "no " + file.filename().string(),
                         .advice = "run: elrom-train run " + directory.string()});
   const auto split = study::read_split(split_file);
-  StudyFiles files{.directory = directory, .store = store ? *store : store_of(directory)};
+  StudyFiles files{.directory = directory,
+                   .store = store ? *store : store_of(directory),
+                   .settings = settings_file(directory)};
   const auto stem = fs::weakly_canonical(directory).filename().string();
   files.name = stem.empty() ? directory.string() : stem;
   for (const auto* part : {&split.train, &split.validation, &split.test})

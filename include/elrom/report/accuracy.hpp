@@ -52,6 +52,7 @@ struct WorstPlace {
 struct MethodField {
   bool available = false;  ///< the bundle has this field
   std::string kind;        ///< what answers for the field: "kernel", "pod_gp", "networks" ...
+  std::string detail;      ///< members and weights of a blend: "kernel 0.62, pod_gp 0.38"
   ErrorSums pooled;
   std::vector<ErrorSums> cases;   //!< (n_cases)
   std::vector<WorstPlace> worst;  //!< (n_cases)

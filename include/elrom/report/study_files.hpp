@@ -19,7 +19,7 @@ struct BundleFile {
 };
 
 struct StudyFiles {
-  std::filesystem::path directory, store;
+  std::filesystem::path directory, store, settings;
   std::string name;                             ///< of the directory
   std::vector<std::string> building;            ///< cases that may be learnt from, in split.json's order
   std::vector<std::string> held_out;            ///< all of them

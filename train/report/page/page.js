@@ -74,7 +74,7 @@
     }
     if (log) {
       const positive = truth.filter((v) => v > 0);
-      return { low: quantile(positive, 0.02), high, map: maps.sequential, log: true };
+      return { low: Math.max(quantile(positive, 0.02), 1e-4 * high), high, map: maps.sequential, log: true };
     }
     return { low, high: high > low ? high : low + 1, map: maps.sequential, log: false };
   }

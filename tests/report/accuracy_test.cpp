@@ -1,0 +1,202 @@
+#include "elrom/report/accuracy.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/error.hpp"
+#include "elrom/field/snapshot_store.hpp"
+#include "elrom/model/predictor.hpp"
+#include "elrom/report/cost.hpp"
+#include "elrom/report/learning_curve.hpp"
+#include "elrom/report/page.hpp"
+#include "report/small_study.hpp"
+
+namespace elrom::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::filesystem::path folder(const std::string& name) {
+  return std::filesystem::path(::testing::TempDir()) / ("elrom-report-" + name);
+}
+
+// One study for all tests of this file: it takes most of their time.
+class Accuracy : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    study_ = std::make_unique<testing::SmallStudy>(folder("accuracy"));
+    report_ = std::make_unique<AccuracyReport>(
+        evaluate({.study = study_->folder(), .figures = true}, silent_log()));
+  }
+  static void TearDownTestSuite() {
+    report_.reset();
+    study_.reset();
+  }
+  static std::unique_ptr<testing::SmallStudy> study_;
+  static std::unique_ptr<AccuracyReport> report_;
+};
+std::unique_ptr<testing::SmallStudy> Accuracy::study_;
+std::unique_ptr<AccuracyReport> Accuracy::report_;
+
+TEST_F(Accuracy, ScoresHeldOutLoadsAndKeepsRepeatsForTheNoise) {
+  ASSERT_EQ(report_->cases.size(), 2u);
+  EXPECT_EQ(report_->cases[0].name, "load_12");
+  EXPECT_THAT(report_->repeats, ::testing::UnorderedElementsAre("load_12", "rep1", "rep2"));
+  EXPECT_EQ(report_->n_training, testing::SmallStudy::n_training);
+}
+
+TEST_F(Accuracy, TheSameModelScoresTheSameAsItsPeer) {
+  // model.elrom is the linear peer under another name.
+  ASSERT_EQ(report_->methods[2].file.name, "linear");
+  for (const auto& field : report_->fields) EXPECT_DOUBLE_EQ(field.nrmse(0), field.nrmse(2));
+  EXPECT_DOUBLE_EQ(report_->gain(), 0.0);
+  EXPECT_EQ(report_->fields_won(), report_->fields.size());
+}
+
+TEST_F(Accuracy, PooledScoreFollowsFromTheStoreByHand) {
+  const auto store = field::SnapshotStore::open(study_->folder() / "snapshots.h5");
+  const auto truth = store.read("pressure", store.find("load_*")),
+             training = store.read("pressure", store.find("train_*"));
+  const MatrixD mean = training.cast<double>().colwise().mean();
+  const model::Predictor predictor(study_->folder() / "model.elrom", {.fields = {"pressure"}});
+  model::Predictor::Scratch scratch;
+  std::vector<float> values(predictor.size());
+  double error = 0, departure = 0;
+  const auto inputs = store.inputs(store.find("load_*"));
+  for (Eigen::Index i = 0; i < truth.rows(); ++i) {
+    predictor.predict({inputs.row(i).data(), 2}, values, {}, scratch);
+    for (Eigen::Index c = 0; c < truth.cols(); ++c) {
+      error += std::pow(double{values[static_cast<std::size_t>(c)]} - truth(i, c), 2);
+      departure += std::pow(mean(0, c) - truth(i, c), 2);
+    }
+  }
+
+  EXPECT_NEAR(report_->fields[1].nrmse(0), std::sqrt(error / departure), 1e-12);
+}
+
+TEST_F(Accuracy, NoiseIsThatOfTheRepeatedRuns) {
+  // 60 cells of variance 0.05^2; three runs estimate it within a few tenths.
+  EXPECT_NEAR(report_->fields[0].noise.front(), 60 * 0.05 * 0.05, 0.5 * 60 * 0.05 * 0.05);
+  EXPECT_LT(report_->fields[0].nrmse_without_noise(0), report_->fields[0].nrmse(0));
+  EXPECT_NEAR(report_->fields[0].budget.nrmse_squared(), std::pow(report_->fields[0].nrmse(0), 2), 1e-12);
+}
+
+TEST_F(Accuracy, CoverageIsMeasuredAtEveryPromisedLevel) {
+  ASSERT_EQ(report_->fields[0].coverage.size(), coverage_levels.size());
+  const double narrow = report_->mean_coverage(0), wide = report_->mean_coverage(2);
+  EXPECT_GE(narrow, 0.0);
+  EXPECT_LE(narrow, wide);
+  EXPECT_LE(wide, 1.0);
+}
+
+TEST_F(Accuracy, TrainingTimesComeFromTheStudy) {
+  EXPECT_EQ(report_->methods[0].file.train_seconds, 2.5);  // "auto", the default method
+  EXPECT_EQ(report_->methods[1].file.train_seconds, 0.25);
+  EXPECT_EQ(report_->methods[2].file.train_seconds, std::nullopt);
+}
+
+TEST_F(Accuracy, HeadlineNamesTheFieldsWhereAPeerIsBetter) {
+  AccuracyReport report = *report_;
+  EXPECT_THAT(headline(report), HasSubstr("no peer is better in any field"));
+
+  report.fields[1].methods[1].pooled.error = 0.25 * report.fields[1].methods[0].pooled.error;
+
+  EXPECT_THAT(headline(report), HasSubstr("a peer is better in pressure (nearest case"));
+}
+
+TEST_F(Accuracy, TerminalTableMarksTheBestWithoutColourToo) {
+  const auto plain = terminal_table(*report_, false), coloured = terminal_table(*report_, true);
+
+  EXPECT_THAT(plain, HasSubstr("*"));
+  EXPECT_THAT(plain, Not(HasSubstr("\033[")));
+  EXPECT_THAT(coloured, HasSubstr("\033["));
+  EXPECT_THAT(plain, HasSubstr("solid volume fraction"));
+}
+
+TEST_F(Accuracy, JsonHoldsEveryFieldMethodAndCase) {
+  const auto root = nlohmann::json::parse(to_json(*report_));
+
+  EXPECT_EQ(root["kind"], "elrom-accuracy");
+  EXPECT_EQ(root["fields"].size(), 3u);
+  EXPECT_EQ(root["fields"][0]["methods"].size(), 3u);
+  EXPECT_EQ(root["fields"][0]["methods"][0]["cases"].size(), 2u);
+  EXPECT_DOUBLE_EQ(root["fields"][0]["methods"][0]["nrmse"], report_->fields[0].nrmse(0));
+  EXPECT_EQ(root["cases"][0]["audit_prediction"]["planes"].size(), 5u);
+}
+
+TEST_F(Accuracy, CsvHasOneLineAFieldMethodAndCase) {
+  const auto text = to_csv(*report_);
+
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 3 * 3 * (1 + 2));
+}
+
+TEST_F(Accuracy, PageNeedsNothingFromOutside) {
+  const auto page = html_page(*report_);
+
+  for (const auto* fetches : {"http://", "https://", "src=", "@import", "<link"})
+    EXPECT_THAT(page, Not(HasSubstr(fetches)));
+  EXPECT_THAT(page, HasSubstr("<h1>2 held-out loads"));
+  // A number that is none would show in a path, an attribute or a cell.
+  for (const auto* broken : {"Mnan", "Lnan", " nan", "=\"nan", ">nan<", ">inf<", "Minf", "Linf"})
+    EXPECT_THAT(page, Not(HasSubstr(broken)));
+  EXPECT_LT(page.size(), 8u << 20);
+}
+
+TEST_F(Accuracy, PageEscapesNamesFromOutside) {
+  AccuracyReport report = *report_;
+  report.cases[0].name = "<script>alert(1)</script>";
+  report.study.name = "a & \"b\"";
+
+  const auto page = html_page(report);
+
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(page, HasSubstr("a &amp; &quot;b&quot;"));
+}
+
+TEST_F(Accuracy, AnUntrainedDirectoryIsRefusedWithTheCommandThatTrainsIt) {
+  const auto empty = folder("untrained");
+  std::filesystem::create_directories(empty);
+
+  try {
+    (void)evaluate({.study = empty}, silent_log());
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("elrom-train run"));
+  }
+}
+
+TEST_F(Accuracy, StudiesAreComparedByCost) {
+  const auto cost = cost_report({.studies = {study_->folder()}}, silent_log());
+
+  ASSERT_EQ(cost.points.size(), 3u);
+  EXPECT_EQ(cost.points[0].train_seconds, 2.5);
+  EXPECT_DOUBLE_EQ(cost.points[0].error, report_->methods[0].mean_nrmse);
+}
+
+TEST_F(Accuracy, LearningCurveEndsAtAllCasesAndHoldsTheSourcesComparison) {
+  const auto curve = learning_curve(
+      {.study = study_->folder(), .method = "linear", .n_points = 3, .n_repeats = 2}, silent_log());
+
+  EXPECT_EQ(curve.points.back().cases, 12u);
+  EXPECT_EQ(curve.v1.cases, 4u);
+  EXPECT_EQ(curve.v2.cases, 12u);
+  EXPECT_EQ(curve.points.back().error_std, 0.0);  // all cases: every draw is the same
+  // All cases with the linear peer: what the peer's own bundle scores.
+  EXPECT_NEAR(curve.v2.error_mean, report_->methods[2].mean_nrmse, 1e-5);
+  EXPECT_GT(curve.v1.error_mean, curve.v2.error_mean);
+}
+
+TEST_F(Accuracy, LearningCurveRefusesAnUnknownMethodWithANearName) {
+  try {
+    (void)learning_curve({.study = study_->folder(), .method = "linaer"}, silent_log());
+    FAIL() << "accepted";
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("did you mean 'linear'?"));
+  }
+}
+
+}  // namespace
+}  // namespace elrom::report

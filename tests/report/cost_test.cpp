@@ -1,0 +1,88 @@
+#include "elrom/report/cost.hpp"
+
+#include <gmock/gmock.h>
+
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/report/learning_curve.hpp"
+
+namespace elrom::report {
+namespace {
+
+std::filesystem::path file(const std::string& name) {
+  return std::filesystem::path(::testing::TempDir()) / name;
+}
+
+TEST(Cost, FrontLeavesOutWhatAnotherBeatsInEverything) {
+  std::vector<CostPoint> points{{.name = "accurate", .error = 0.6, .train_seconds = 100, .predict_ms = 9},
+                                {.name = "fast", .error = 0.9, .train_seconds = 1, .predict_ms = 1},
+                                {.name = "beaten", .error = 0.9, .train_seconds = 2, .predict_ms = 1},
+                                {.name = "unknown time", .error = 0.95, .predict_ms = 0.5}};
+
+  mark_front(points);
+
+  EXPECT_TRUE(points[0].front);
+  EXPECT_TRUE(points[1].front);
+  EXPECT_FALSE(points[2].front);
+  EXPECT_TRUE(points[3].front);
+}
+
+TEST(Cost, EqualPointsBothStayOnTheFront) {
+  std::vector<CostPoint> points(2, {.name = "twin", .error = 0.6, .train_seconds = 1, .predict_ms = 1});
+
+  mark_front(points);
+
+  EXPECT_TRUE(points[0].front && points[1].front);
+}
+
+TEST(Cost, JsonReadsBackTheSame) {
+  const CostReport written{{{.name = "a: \"b\"", .error = 0.25, .predict_ms = 3.5, .front = true}}};
+  base::write_text(file("cost.json"), to_json(written));
+
+  const auto read = read_cost_report(file("cost.json"));
+
+  ASSERT_EQ(read.points.size(), 1u);
+  EXPECT_EQ(read.points[0].name, "a: \"b\"");
+  EXPECT_EQ(read.points[0].train_seconds, std::nullopt);
+  EXPECT_TRUE(read.points[0].front);
+}
+
+TEST(Cost, AForeignFileIsRefusedByName) {
+  base::write_text(file("foreign.json"), "{\"points\": 3}");
+
+  EXPECT_THROW((void)read_cost_report(file("foreign.json")), InputError);
+}
+
+TEST(PowerLaw, RecoversTheLawThatMadeThePoints) {
+  std::vector<double> cases{8, 16, 32, 64}, errors;
+  for (const double n : cases) errors.push_back(0.5 + 2 * std::pow(n, -0.8));
+
+  const auto law = fit_power_law(cases, errors);
+
+  EXPECT_NEAR(law.rate, 0.8, 1e-9);  // on the grid of rates
+  EXPECT_NEAR(law.floor, 0.5, 1e-9);
+  EXPECT_NEAR(law.at(84), 0.5 + 2 * std::pow(84, -0.8), 1e-9);
+}
+
+TEST(PowerLaw, ErrorsThatRisePromiseNoGain) {
+  const auto law = fit_power_law({10, 20, 40}, {0.5, 0.6, 0.7});
+
+  EXPECT_DOUBLE_EQ(law.at(60), law.at(40));
+}
+
+TEST(LearningCurve, JsonReadsBackTheSame) {
+  LearningCurve curve{.study = "s", .method = "linear"};
+  curve.points = {{.cases = 4, .error_mean = 0.5, .error_std = 0.1, .field_error = {{"pressure", 0.5}}}};
+  curve.v1 = curve.v2 = curve.points.front();
+  curve.gain_next_20 = 0.03;
+  base::write_text(file("curve.json"), to_json(curve));
+
+  const auto read = read_learning_curve(file("curve.json"));
+
+  EXPECT_EQ(read.method, "linear");
+  EXPECT_EQ(read.points.front().field_error.at("pressure"), 0.5);
+  EXPECT_EQ(read.gain_next_20, 0.03);
+}
+
+}  // namespace
+}  // namespace elrom::report

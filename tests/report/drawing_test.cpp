@@ -1,0 +1,142 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "../../train/report/base64.hpp"
+#include "../../train/report/colour_map.hpp"
+#include "../../train/report/svg.hpp"
+#include "elrom/report/figures.hpp"
+
+namespace elrom::report {
+namespace {
+
+TEST(Base64, MatchesTheVectorsOfTheStandard) {
+  const auto encode = [](const std::string& text) {
+    return base64(std::vector<std::uint8_t>(text.begin(), text.end()));
+  };
+
+  // RFC 4648, section 10.
+  EXPECT_EQ(encode(""), "");
+  EXPECT_EQ(encode("f"), "Zg==");
+  EXPECT_EQ(encode("fo"), "Zm8=");
+  EXPECT_EQ(encode("foo"), "Zm9v");
+  EXPECT_EQ(encode("foobar"), "Zm9vYmFy");
+}
+
+TEST(ColourMap, SequentialRisesEvenlyInLightness) {
+  const auto map = sequential_map();
+  const double step = (lightness(map[255]) - lightness(map[0])) / 255;
+
+  EXPECT_GT(step, 0);
+  constexpr double rounding = 0.6;  // of a step: colours have 8 bits
+  for (std::size_t i = 0; i < 255; i += 5) {
+    const double expected = lightness(map[0]) + step * static_cast<double>(i);
+    EXPECT_NEAR(lightness(map[i]), expected, rounding * step + 0.004) << i;
+  }
+}
+
+TEST(ColourMap, DivergingIsEquallyDarkAtBothEndsAndLightBetween) {
+  const auto map = diverging_map();
+
+  EXPECT_NEAR(lightness(map[0]), lightness(map[255]), 0.01);
+  EXPECT_GT(lightness(map[127]), 0.95);
+  EXPECT_GT(map[0].b, map[0].r);
+  EXPECT_GT(map[255].r, map[255].b);
+}
+
+TEST(SvgAxis, TicksAreRoundNumbersInsideTheAxis) {
+  EXPECT_THAT(svg::ticks({"", 0, 1}, 5),
+              testing::ElementsAre(0, testing::DoubleEq(0.2), testing::DoubleEq(0.4),
+                                   testing::DoubleNear(0.6, 1e-12), testing::DoubleEq(0.8), 1));
+  EXPECT_THAT(svg::ticks({"", -30, 47}, 4), testing::ElementsAre(-20, 0, 20, 40));
+  EXPECT_THAT(svg::ticks({"", 1e-5, 0.2, svg::Scale::log}, 5),
+              testing::ElementsAre(testing::DoubleEq(1e-5), testing::DoubleEq(1e-4), testing::DoubleEq(1e-3),
+                                   testing::DoubleEq(1e-2), testing::DoubleEq(1e-1)));
+}
+
+TEST(SvgAxis, FitsLogarithmicallyOnlyWhatIsPositiveOverDecades) {
+  EXPECT_EQ(svg::fit_axis("", std::vector{1e-5, 0.1}, 2.0).scale, svg::Scale::log);
+  EXPECT_EQ(svg::fit_axis("", std::vector{0.0, 0.1}, 2.0).scale, svg::Scale::linear);
+  EXPECT_EQ(svg::fit_axis("", std::vector{0.05, 0.1}, 2.0).scale, svg::Scale::linear);
+  const auto constant = svg::fit_axis("", std::vector{3.0, 3.0});
+  EXPECT_LT(constant.low, constant.high);
+}
+
+TEST(SvgChart, BreaksALineWhereAValueIsMissing) {
+  svg::Chart chart({}, {"x", 0, 3}, {"y", 0, 1}, "test");
+  const std::vector<double> x{0, 1, 2, 3}, y{0.5, std::nan(""), 0.5, 0.6};
+
+  chart.line(x, y, "s0", "gap");
+
+  const auto text = chart.text();
+  const auto path = text.substr(text.find("class=\"line s0\""));
+  EXPECT_EQ(std::count(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(path.find("</path>")), 'M'),
+            2);
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr("nan")));
+}
+
+TEST(SvgChart, TextIsEscaped) {
+  const svg::Chart chart({}, {"a < b", 0, 1}, {"y & z", 0, 1}, "\"quoted\"");
+
+  EXPECT_THAT(chart.text(), testing::AllOf(testing::HasSubstr("a &lt; b"), testing::HasSubstr("y &amp; z"),
+                                           testing::HasSubstr("&quot;quoted&quot;")));
+}
+
+// 3 columns along x, 2 along y, 2 planes.
+field::Mesh small_mesh() { return field::make_furnace_mesh({.bottom_width_m = 10.6}, 3, 2, 2); }
+
+TEST(Figures, MiddleCutsFollowTheGridOfColumns) {
+  const auto cuts = middle_cuts(small_mesh());
+
+  ASSERT_EQ(cuts.size(), 2u);
+  EXPECT_EQ(cuts[0].cells.size(), 3u * 2);  // along x, in both planes
+  EXPECT_EQ(cuts[1].cells.size(), 2u * 2);
+  EXPECT_THAT(cuts[0].cells[0], testing::ElementsAre(0, 3));  // between the two rows along y
+  EXPECT_THAT(cuts[1].cells[0], testing::ElementsAre(1, 1));  // the middle of three columns
+  EXPECT_EQ(cuts[0].title, "y = 13.80 m");
+  EXPECT_EQ(cuts[1].title, "x = 5.30 m");
+}
+
+TEST(Figures, QuadrilateralsTileTheCut) {
+  for (const auto& cut : middle_cuts(small_mesh())) {
+    double area = 0;
+    for (const auto& q : cut.corners)  // shoelace formula
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t a = 2 * k, b = 2 * ((k + 1) % 4);
+        area += 0.5 * (double{q[a]} * q[b + 1] - double{q[b]} * q[a + 1]);
+      }
+    EXPECT_NEAR(area, 47 * (cut.horizontal == "x [m]" ? 10.6 : 27.6), 1e-2) << cut.title;
+  }
+}
+
+TEST(Figures, CutsBetweenTwoRowsShowTheirMean) {
+  const auto cuts = middle_cuts(small_mesh());
+  std::vector<float> cells(12);
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<float>(i);
+
+  const auto values = on_cuts(cuts, cells);
+
+  EXPECT_FLOAT_EQ(values[0], 1.5F);  // mean of cells 0 and 3
+  EXPECT_FLOAT_EQ(values[6], 1.0F);  // first of the second cut: cell 1
+}
+
+TEST(Figures, PlaneMeansAreVolumeWeighted) {
+  auto mesh = small_mesh();
+  mesh.volume[0] = 3 * mesh.volume[1];
+  for (std::size_t i = 1; i < 6; ++i) mesh.volume[i] = mesh.volume[1];
+  std::vector<float> cells(12, 0.0F);
+  cells[0] = 8;
+
+  EXPECT_NEAR(plane_means(mesh, cells)[0], 8.0 * 3 / 8, 1e-6);
+}
+
+TEST(Histogram, CountsOutliersInTheEndBins) {
+  Histogram histogram(-1, 1, 4);
+  for (const double value : {-5.0, -0.9, 0.1, 0.6, 7.0}) histogram.add(value);
+
+  EXPECT_THAT(histogram.counts, testing::ElementsAre(2, 0, 1, 2));
+  EXPECT_EQ(histogram.total(), 5u);
+}
+
+}  // namespace
+}  // namespace elrom::report

@@ -1,0 +1,122 @@
+#pragma once
+// A trained study of a tiny made-up furnace: fields are smooth functions of two inputs and of place, so that
+// methods can learn them, and the repeated runs differ by a known noise.
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/random.hpp"
+#include "elrom/field/snapshot_store.hpp"
+#include "elrom/model/bundle.hpp"
+#include "elrom/study/cross_validation.hpp"
+#include "elrom/study/peers.hpp"
+#include "elrom/study/split.hpp"
+
+namespace elrom::report::testing {
+
+class SmallStudy {
+ public:
+  static constexpr std::size_t n_training = 12;
+
+  /// @param folder made anew @param main_method answers for every field of model.elrom
+  explicit SmallStudy(std::filesystem::path folder, const std::string& main_method = "linear")
+      : folder_(std::move(folder)) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_ / "peers");
+    write_store();
+    write_models(main_method);
+    base::write_text(folder_ / "timing.json",
+                     R"({"stages": {"model": {"seconds": 3}}, "methods": {"auto": 2.5, "nearest": 0.25}})");
+  }
+  ~SmallStudy() { std::filesystem::remove_all(folder_); }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  static std::vector<field::FieldInfo> fields() {
+    return {field::field_info("gas_velocity_z"), field::field_info("pressure"),
+            field::field_info("solid_volume_fraction")};
+  }
+  static field::InputSchema schema() {
+    return field::InputSchema{{{"primary_air", "kg/s", "kg/s"}, {"gas_temperature", "K", "K"}}};
+  }
+
+  void write_store() {
+    const auto mesh = field::make_furnace_mesh({}, 4, 3, 5);
+    field::SnapshotWriter writer(folder_ / "snapshots.h5", mesh, schema(), fields());
+    base::Random random{base::Seed(3)};
+    for (std::size_t i = 0; i < n_training + 2; ++i) {
+      const double load = 0.4 + 0.05 * static_cast<double>(i);
+      const auto name = i < n_training ? "train_" + std::to_string(i) : "load_" + std::to_string(i);
+      add_case(writer, mesh, name,
+               i < n_training ? load : 0.3 + 0.2 * static_cast<double>(i - n_training + 1), random);
+    }
+    for (int i = 1; i <= 2; ++i)
+      add_case(writer, mesh, "rep" + std::to_string(i), 0.5, random);  // of the first load
+    writer.commit();
+  }
+
+  static void add_case(field::SnapshotWriter& writer, const field::Mesh& mesh, const std::string& name,
+                       double load, base::Random& random) {
+    field::Snapshot snapshot;
+    snapshot.record.inputs = {.name = name, .load = load, .values = {200 * load, 900 + 300 * load * load}};
+    snapshot.record.source = name + ".h5";
+    snapshot.record.source_digest = name;
+    snapshot.fields.resize(3, static_cast<Eigen::Index>(mesh.n_cells()));
+    for (Eigen::Index cell = 0; cell < snapshot.fields.cols(); ++cell) {
+      const double z = mesh.centre(cell, 2) / 47, x = mesh.centre(cell, 0) / 10.6;
+      snapshot.fields(0, cell) = static_cast<float>(5 * load * (1 + 0.3 * x) + 0.05 * random.normal());
+      snapshot.fields(1, cell) = static_cast<float>(2000 * (1 - z) * (0.5 + load) + 5 * random.normal());
+      snapshot.fields(2, cell) =
+          static_cast<float>(0.1 * std::exp(-5 * z) * (1.2 - 0.5 * load) * (1 + 0.02 * random.normal()));
+    }
+    writer.add(snapshot);
+  }
+
+  void write_models(const std::string& main_method) {
+    const auto store = field::SnapshotStore::open(folder_ / "snapshots.h5");
+    study::SplitNames split;
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < store.n_cases(); ++i) {
+      const auto& name = store.cases()[i].inputs.name;
+      const bool training = name.starts_with("train");
+      if (training) rows.push_back(i);
+      (training ? split.train : split.held_out).push_back(name);
+    }
+    study::write_split(folder_ / "split.json", split);
+    study::CaseSet cases{store.mesh(), store.schema(), {}, {}, store.inputs(rows), {}};
+    for (const auto row : rows) {
+      cases.names.push_back(store.cases()[row].inputs.name);
+      cases.loads.push_back(store.cases()[row].inputs.load);
+    }
+    write_bundle(store, cases, rows, main_method, folder_ / "model.elrom", true);
+    for (const std::string peer : {"nearest", "linear"})
+      write_bundle(store, cases, rows, peer, folder_ / "peers" / (peer + ".elrom"), false);
+  }
+
+  static void write_bundle(const field::SnapshotStore& store, const study::CaseSet& cases,
+                           const std::vector<std::size_t>& rows, const std::string& method,
+                           const std::filesystem::path& path, bool with_uncertainty) {
+    model::Bundle bundle;
+    bundle.info = {.method = method, .fields = fields(), .schema = cases.schema, .cases = cases.names};
+    bundle.mesh = cases.mesh;
+    bundle.guard = model::Guard(cases.schema, cases.inputs, cases.names, cases.loads);
+    std::vector<std::size_t> all(rows.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    for (const auto& info : fields()) {
+      const study::FieldData data{&cases, info, store.read(info.name, rows)};
+      bundle.models[info.name] = study::make_peer(method)->fit(data, all, {});
+      if (!with_uncertainty) continue;
+      const auto folds = study::load_grouped_folds(cases.loads, all, 4);
+      const MatrixF residuals = data.values - study::make_peer(method)->cross_predict(data, folds, {});
+      bundle.uncertainty[info.name] = std::make_shared<model::Uncertainty>(residuals, cases.mesh.n_columns);
+    }
+    bundle.write(path);
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace elrom::report::testing
