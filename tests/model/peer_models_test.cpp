@@ -1,0 +1,237 @@
+// Every closed-form model: the same after save and load, and plane by plane independent of what else is
+// asked.
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/random.hpp"
+#include "elrom/model/coefficient_models.hpp"
+#include "elrom/model/composite_models.hpp"
+#include "elrom/model/nearest_model.hpp"
+#include "elrom/model/pod_model.hpp"
+#include "support/throws.hpp"
+
+namespace elrom::model {
+namespace {
+
+constexpr std::size_t n_planes = 5, n_columns = 7, n_cases = 9, n_modes = 6;
+
+MatrixD random_matrix(Eigen::Index rows, Eigen::Index columns, std::string_view name) {
+  base::Random random(base::Seed(31).derive(name));
+  MatrixD values(rows, columns);
+  for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = random.normal();
+  return values;
+}
+
+struct Parts {
+  MatrixD x = random_matrix(n_cases, 3, "x");
+  Eigen::MatrixXd y = random_matrix(n_cases, n_modes, "y");
+  math::Standardiser scaler{x};
+  MatrixD z = scaler.apply(x);
+  Eigen::VectorXd ones = Eigen::VectorXd::Ones(n_modes);
+};
+
+std::shared_ptr<CoefficientModel> coefficients(const std::string& kind) {
+  const Parts p;
+  const math::GpParameters gp{Eigen::Vector3d(1, 2, 3), 1.5, 0.1, math::Covariance::matern52};
+  if (kind == "linear")
+    return std::make_shared<LinearCoefficients>(p.scaler, random_matrix(3, n_modes, "w"), p.ones, p.ones);
+  if (kind == "pod_gp") {
+    return std::make_shared<GpCoefficients>(p.scaler, p.z, std::vector{math::GaussianProcess(p.z, p.y, gp)},
+                                            2 * p.ones);
+  }
+  if (kind == "pod_gp_per_mode") {
+    std::vector<math::GaussianProcess> processes;
+    for (Eigen::Index m = 0; m < p.y.cols(); ++m) processes.emplace_back(p.z, p.y.col(m), gp);
+    return std::make_shared<GpCoefficients>(p.scaler, p.z, processes, 2 * p.ones);
+  }
+  return std::make_shared<RbfCoefficients>(p.scaler, math::RbfInterpolator(p.z, p.y, {.smoothing = 0.1}),
+                                           p.ones);
+}
+
+std::shared_ptr<FieldModel> make(const std::string& kind) {
+  if (kind == "nearest") {
+    const Parts p;
+    const MatrixF values = random_matrix(n_cases, n_planes * n_columns, "values").cast<float>();
+    return std::make_shared<NearestModel>(p.scaler, p.z, io::Tensor::copy(values), n_columns);
+  }
+  if (kind == "blend") {
+    return std::make_shared<BlendModel>(
+        std::vector<BlendModel::Part>{{0.25, make("linear")}, {0.75, make("pod_rbf")}});
+  }
+  const Eigen::VectorXd mean = random_matrix(n_planes * n_columns, 1, "mean");
+  const MatrixF modes = random_matrix(n_modes, n_planes * n_columns, "modes").cast<float>();
+  return make_pod_model(kind, mean, modes, mean.cwiseAbs(), n_columns, coefficients(kind));
+}
+
+struct Answer {
+  std::vector<float> values, spread;
+  bool operator==(const Answer&) const = default;
+};
+
+Answer ask(const FieldModel& model, const std::vector<std::int32_t>& planes,
+           const std::vector<double>& inputs = {0.3, -0.7, 0.2}) {
+  Answer answer{std::vector<float>(planes.size() * n_columns), std::vector<float>(planes.size() * n_columns)};
+  Workspace workspace;
+  model.predict({.inputs = inputs, .planes = planes}, answer.values, answer.spread, workspace);
+  return answer;
+}
+
+const std::vector<std::int32_t> every_plane{0, 1, 2, 3, 4};
+
+class EveryModel : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Peers, EveryModel,
+                         ::testing::Values("nearest", "linear", "pod_gp", "pod_gp_per_mode", "pod_rbf",
+                                           "blend"));
+
+TEST_P(EveryModel, IsTheSameAfterSaveAndLoad) {
+  const auto model = make(GetParam());
+  io::TensorFile file;
+
+  model->save(file, "fields/pressure");
+  const auto loaded = load_field_model(file, "fields/pressure");
+
+  EXPECT_EQ(loaded->kind(), GetParam());
+  EXPECT_EQ(ask(*loaded, every_plane), ask(*model, every_plane));
+}
+
+TEST_P(EveryModel, PlanesDoNotDependOnEachOther) {
+  const auto model = make(GetParam());
+  const Answer all = ask(*model, every_plane), two = ask(*model, {1, 4});
+
+  for (std::size_t c = 0; c < n_columns; ++c) {
+    EXPECT_EQ(two.values[c], all.values[n_columns + c]);
+    EXPECT_EQ(two.values[n_columns + c], all.values[4 * n_columns + c]);
+    EXPECT_EQ(two.spread[n_columns + c], all.spread[4 * n_columns + c]);
+  }
+}
+
+TEST_P(EveryModel, NamesTheMissingTensor) {
+  io::TensorFile whole, part;
+  make(GetParam())->save(whole, "m");
+  for (const auto& [key, text] : whole.texts()) part.set_text(key, text);  // descriptions without tensors
+
+  EXPECT_THROW((void)load_field_model(part, "m"), InputError);
+}
+
+TEST(PodModel, IsMeanPlusCoefficientsTimesModes) {
+  const auto model = make("linear");
+  const Parts p;
+  std::vector<double> scaled(3), c(n_modes);
+  Workspace workspace;
+  coefficients("linear")->predict(std::vector<double>{0.3, -0.7, 0.2}, c, {}, false, workspace);
+  const Eigen::VectorXd mean = random_matrix(n_planes * n_columns, 1, "mean");
+  const MatrixD modes = random_matrix(n_modes, n_planes * n_columns, "modes");
+
+  const Eigen::VectorXd expected = mean + modes.transpose() * Eigen::VectorXd::Map(c.data(), n_modes);
+
+  const Answer answer = ask(*model, every_plane);
+  for (Eigen::Index i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(answer.values[static_cast<std::size_t>(i)], expected[i], 1e-5 * expected.norm());
+  }
+}
+
+TEST(PodModel, SpreadAddsModeVarianceToTheResidual) {
+  const auto model = make("linear");  // unit variance of every coefficient
+  const Eigen::VectorXd mean = random_matrix(n_planes * n_columns, 1, "mean");
+  const MatrixD modes = random_matrix(n_modes, n_planes * n_columns, "modes");
+
+  const Answer answer = ask(*model, every_plane);
+
+  EXPECT_NEAR(answer.spread[3], std::sqrt(modes.col(3).squaredNorm() + mean[3] * mean[3]), 1e-5);
+}
+
+TEST(PodModel, RefusesModesOfAnotherSize) {
+  PodModel::Parts parts{.kind = "linear", .coefficients = coefficients("linear")};
+  parts.mean = io::Tensor::copy(MatrixF(MatrixF::Zero(2, 3)));
+  parts.modes =
+      io::Tensor::copy(std::vector<float>(2 * 5 * 3), {2, 5, 3});  // five modes for six coefficients
+
+  EXPECT_ERROR(InputError, "found 2 x 5 x 3, expected 2 x 6 x 3", PodModel(parts, "file:m"));
+}
+
+TEST(GpCoefficients, AgreeWithTheProcess) {
+  const Parts p;
+  const math::GpParameters gp{Eigen::Vector3d(1, 2, 3), 1.5, 0.1, math::Covariance::matern52};
+  const math::GaussianProcess process(p.z, p.y, gp);
+  std::vector<double> c(n_modes), variance(n_modes);
+  const std::vector<double> inputs{0.3, -0.7, 0.2};
+  MatrixD at(1, 3);
+  p.scaler.apply(inputs, std::span(at.data(), 3));
+  Workspace workspace;
+
+  coefficients("pod_gp")->predict(inputs, c, variance, false, workspace);
+
+  EXPECT_NEAR(c[2], 2 * process.mean(at)(0, 2), 1e-12);
+  EXPECT_NEAR(variance[2], 4 * process.variance(at)[0], 1e-5);  // the factor is stored in float32
+}
+
+TEST(NearestModel, AnswersWithTheNearestCase) {
+  const auto model = make("nearest");
+  const MatrixD x = random_matrix(n_cases, 3, "x");
+  const MatrixF values = random_matrix(n_cases, n_planes * n_columns, "values").cast<float>();
+
+  const Answer answer = ask(*model, every_plane, {x(4, 0) + 1e-3, x(4, 1), x(4, 2)});
+
+  EXPECT_EQ(answer.values[10], values(4, 10));
+}
+
+TEST(BlendModel, IsTheWeightedSum) {
+  const Answer blend = ask(*make("blend"), every_plane), a = ask(*make("linear"), every_plane),
+               b = ask(*make("pod_rbf"), every_plane);
+
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    EXPECT_NEAR(blend.values[i], 0.25 * a.values[i] + 0.75 * b.values[i], 1e-5);
+    EXPECT_NEAR(blend.spread[i], 0.25 * a.spread[i] + 0.75 * b.spread[i], 1e-5);
+  }
+}
+
+TEST(BlendModel, RefusesAnAbsurdNumberOfParts) {
+  io::TensorFile file;
+  file.set_text("m", R"({"kind": "blend", "parts": 4000000000})");
+
+  EXPECT_ERROR(InputError, "between 1 and 64", load_field_model(file, "m"));
+}
+
+/// Two columns that a mirror exchanges; inputs 0 and 1 change places.
+field::Mirror swap_mirror(std::size_t planes) {
+  field::Mirror mirror{.name = "swap",
+                       .axes = "y",
+                       .input_from = {1, 0, 2},
+                       .input_sign = {1, 1, 1},
+                       .input_offset = {0, 0, 0}};
+  for (std::size_t c = 0; c < planes * n_columns; ++c) {
+    mirror.cell_from.push_back(
+        static_cast<std::int32_t>(c / n_columns * n_columns + (n_columns - 1 - c % n_columns)));
+  }
+  return mirror;
+}
+
+TEST(MirrorModel, GivesMirroredCasesMirroredFields) {
+  const auto group = field::symmetry_group({swap_mirror(n_planes)}, 3, n_planes * n_columns);
+  const MirrorModel model(make("pod_gp"), group, field::Parity::vector_y, n_planes);
+
+  const Answer one = ask(model, every_plane, {0.3, -0.7, 0.2}),
+               other = ask(model, every_plane, {-0.7, 0.3, 0.2});
+
+  for (std::size_t c = 0; c < n_columns; ++c) {
+    EXPECT_NEAR(one.values[c], -other.values[n_columns - 1 - c],
+                1e-6);  // the normal component changes its sign
+  }
+}
+
+TEST(MirrorModel, IsTheSameAfterSaveAndLoad) {
+  const auto group = field::symmetry_group({swap_mirror(n_planes)}, 3, n_planes * n_columns);
+  const MirrorModel model(make("pod_gp"), group, field::Parity::scalar, n_planes);
+  io::TensorFile file;
+
+  model.save(file, "m");
+
+  EXPECT_EQ(ask(*load_field_model(file, "m"), every_plane), ask(model, every_plane));
+  EXPECT_EQ(file.tensor("m/image1/column_from").shape()[0], 1U);  // one map for all planes
+}
+
+}  // namespace
+}  // namespace elrom::model
