@@ -12,6 +12,7 @@ namespace {
 
 nlohmann::ordered_json describe(const std::filesystem::path& path) {
   const auto ending = path.extension();
+  if (ending == ".elrom") return describe_bundle(model::BundleReader(path));
   if (ending == ".h5" || ending == ".hdf5" || ending == ".hdf") {
     std::string kind;
     {
@@ -24,7 +25,7 @@ nlohmann::ordered_json describe(const std::filesystem::path& path) {
       throw InputError({.what = "nothing to inspect",
                         .where = path.string(),
                         .found = kind,
-                        .expected = "a store, a mesh or a case"});
+                        .expected = "a store, a mesh, a case or a bundle"});
   }
   return describe_case(read_case(path));
 }
@@ -37,10 +38,13 @@ void add_inspect(CLI::App& program, Work& chosen) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  auto* command = program.add_subcommand("inspect",
-                                         "Say what is in a snapshot store, a reduced mesh or a CFD result: "
-                                         "cases, loads, inputs, fields, units.");
-  command->add_option("FILE", options->path, "Store, mesh or case")->required()->type_name("FILE");
+  auto* command =
+      program.add_subcommand("inspect",
+                             "Say what is in a snapshot store, a reduced mesh, a CFD result or a bundle: "
+                             "cases, loads, inputs, fields, units.");
+  command->add_option("FILE", options->path, "Store, mesh, case or bundle (model.elrom)")
+      ->required()
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &chosen] {
     chosen = [options] {

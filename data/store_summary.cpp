@@ -148,4 +148,24 @@ Json describe_case(const CfdCase& one) {
   return result;
 }
 
+Json describe_bundle(const model::BundleReader& bundle) {
+  const auto& info = bundle.info();
+  Json result{{"kind", "bundle"}, {"method", info.method}, {"mesh", describe_mesh(bundle.mesh())}};
+  result["inputs"] = Json::array();
+  for (const auto& input : info.schema.inputs()) {
+    result["inputs"].push_back({{"name", input.name}, {"unit", input.display_unit}});
+  }
+  result["fields"] = Json::array();
+  for (const auto& field : info.fields) {
+    result["fields"].push_back(
+        {{"name", field.name}, {"unit", field.unit}, {"model", bundle.model(field.name)->kind()}});
+  }
+  result["cases"] = info.cases;
+  result["provenance"] = info.provenance;
+  result["accuracy"] = Json::parse(info.accuracy_json, nullptr, false);
+  if (result["accuracy"].is_discarded()) result["accuracy"] = nullptr;
+  result["digest"] = bundle.digest();
+  return result;
+}
+
 }  // namespace elrom::ingest

@@ -1,6 +1,6 @@
 #pragma once
-// What is in a store, a mesh or a case, for `elrom-data inspect`: numbers in the user's units, as text and as
-// JSON.
+// What is in a store, a mesh, a case or a bundle, for `elrom-data inspect`: numbers in the user's units, as
+// text and as JSON.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,6 +8,7 @@
 #include "elrom/field/mesh.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/ingest/cfd_case.hpp"
+#include "elrom/model/bundle.hpp"
 
 namespace elrom::ingest {
 
@@ -16,6 +17,9 @@ namespace elrom::ingest {
 [[nodiscard]] nlohmann::ordered_json describe_store(const field::SnapshotStore& store);
 [[nodiscard]] nlohmann::ordered_json describe_mesh(const field::Mesh& mesh);
 [[nodiscard]] nlohmann::ordered_json describe_case(const CfdCase& one);
+/// Keys: kind, method, mesh, inputs, fields [{name, unit, model}], cases (those it was trained on),
+/// provenance, accuracy, digest.
+[[nodiscard]] nlohmann::ordered_json describe_bundle(const model::BundleReader& bundle);
 
 /// The same in words, for a terminal.
 [[nodiscard]] std::string in_words(const nlohmann::ordered_json& description);

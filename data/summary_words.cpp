@@ -73,12 +73,34 @@ std::string case_words(const Json& one) {
   return text + range_table(one["fields"], "field") + "digest " + one["digest"].get<std::string>() + "\n";
 }
 
+std::string bundle_words(const Json& bundle) {
+  std::string text =
+      fmt::format("model of method '{}', trained on {} cases\nmesh: ", bundle["method"].get<std::string>(),
+                  bundle["cases"].size());
+  text += mesh_words(bundle["mesh"]);
+  text += fmt::format("\n{:<30}{:<8}{}\n", "field", "unit", "predicted by");
+  for (const auto& field : bundle["fields"]) {
+    text += fmt::format("{:<30}{:<8}{}\n", field["name"].get<std::string>(), field["unit"].get<std::string>(),
+                        field["model"].get<std::string>());
+  }
+  text += fmt::format("\n{:<30}{}\n", "boundary condition", "unit");
+  for (const auto& input : bundle["inputs"]) {
+    text += fmt::format("{:<30}{}\n", input["name"].get<std::string>(), input["unit"].get<std::string>());
+  }
+  text += "\nmade from\n";
+  for (const auto& [key, value] : bundle["provenance"].items()) {
+    text += fmt::format("  {:<28}{}\n", key, value.get<std::string>());
+  }
+  return text + "digest " + bundle["digest"].get<std::string>() + "\n";
+}
+
 }  // namespace
 
 std::string in_words(const Json& description) {
   const auto kind = description["kind"].get<std::string>();
   if (kind == "store") return store_words(description);
   if (kind == "mesh") return "reduced mesh: " + mesh_words(description);
+  if (kind == "bundle") return bundle_words(description);
   return case_words(description);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "elrom/ingest/generate.hpp"
+#include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace elrom::ingest {
@@ -52,6 +53,19 @@ TEST(StoreSummary, DescribesACaseAndAMesh) {
   EXPECT_THAT(in_words(one), HasSubstr("case load_064: load 64.0 %"));
   EXPECT_EQ(mesh["n_cells"], 55440);
   EXPECT_THAT(in_words(mesh), HasSubstr("66 planes x 840 columns"));
+}
+
+TEST(StoreSummary, DescribesABundle) {
+  test::TemporaryFolder folder;
+  test::sample_bundle({}).write(folder / "model.elrom");
+  const model::BundleReader reader(folder / "model.elrom");
+
+  const auto description = describe_bundle(reader);
+
+  EXPECT_EQ(description["cases"].size(), 12U);
+  EXPECT_EQ(description["fields"][0]["model"], "networks");
+  EXPECT_EQ(description["digest"], reader.digest());
+  EXPECT_THAT(in_words(description), HasSubstr("trained on 12 cases"));
 }
 
 }  // namespace
