@@ -13,7 +13,7 @@ namespace {
 
 constexpr double gravity = 9.81;           // m/s2
 constexpr double solids_density = 2400.0;  // kg/m3
-constexpr double furnace_height = 47.0;    // m
+constexpr double furnace_height = field::TaperedFurnace{}.height_m;
 constexpr double densest = 0.6;
 
 // Closeness to the walls: 0 in the core, 1 at a wall.
