@@ -50,6 +50,16 @@ void keep_used_points(const field::Mesh& mesh, const Cells& cells, CellGeometry&
 
 }  // namespace
 
+Cells all_cells(std::size_t n_planes, std::size_t n_columns) {
+  Cells cells;
+  cells.n_columns = n_columns;
+  cells.planes.resize(n_planes);
+  cells.cells.resize(n_planes * n_columns);
+  std::iota(cells.planes.begin(), cells.planes.end(), 0);
+  std::iota(cells.cells.begin(), cells.cells.end(), 0);
+  return cells;
+}
+
 Cells choose_cells(const field::Mesh& mesh, std::vector<std::int32_t> planes, const std::optional<Box>& box) {
   Cells cells;
   cells.n_columns = mesh.n_columns;

@@ -22,6 +22,8 @@ struct Cells {
   [[nodiscard]] std::size_t size() const { return cells.size(); }
 };
 
+/// Every cell, for which the mesh itself is not needed.
+[[nodiscard]] Cells all_cells(std::size_t n_planes, std::size_t n_columns);
 /// @param planes empty: all. @throws UsageError when no cell is left
 [[nodiscard]] Cells choose_cells(const field::Mesh& mesh, std::vector<std::int32_t> planes,
                                  const std::optional<Box>& box);

@@ -63,7 +63,9 @@ void write_mesh(const Run& run, const io::Hdf5Group& elrom) {
   }
   auto shape = shape_of(run);
   shape.push_back(3);
-  mesh.write<float>("centre", run.geometry.centre, shape).set_text("unit", "m");
+  auto centre = run.packed ? mesh.write_packed<float>("centre", shape, run.packed->centre.u8())
+                           : mesh.write<float>("centre", run.geometry.centre, shape);
+  centre.set_text("unit", "m");
   if (!run.cells.whole_planes) mesh.write<std::int32_t>("cells", run.cells.cells);
 }
 
@@ -80,23 +82,38 @@ void show_fields(const Run& run, const io::Hdf5Group& elrom, const std::string& 
   }
 }
 
+/// Points and cells as VTK wants them; packed ones are copied as they are.
+void write_geometry(const Run& run, const io::Hdf5Group& vtk) {
+  constexpr std::size_t n_corners = 8;
+  const auto& geometry = run.geometry;
+  const std::size_t n_cells = run.cells.size();
+  const std::size_t n_points = run.packed ? run.packed->n_points : geometry.points.size() / 3;
+  const auto count = [&](const char* name, std::size_t n) {
+    const std::int64_t value[] = {static_cast<std::int64_t>(n)};
+    vtk.write<std::int64_t>(name, value);
+  };
+  count("NumberOfPoints", n_points);
+  count("NumberOfCells", n_cells);
+  count("NumberOfConnectivityIds", n_cells * n_corners);
+  if (run.packed) {
+    vtk.write_packed<float>("Points", {n_points, 3}, run.packed->points.u8());
+    vtk.write_packed<std::int32_t>("Connectivity", {n_cells * n_corners}, run.packed->connectivity.u8());
+    vtk.write_packed<std::int32_t>("Offsets", {n_cells + 1}, run.packed->offsets.u8());
+    vtk.write_packed<std::uint8_t>("Types", {n_cells}, run.packed->types.u8());
+    return;
+  }
+  vtk.write<float>("Points", geometry.points, {n_points, 3});
+  vtk.write<std::int32_t>("Connectivity", geometry.connectivity);
+  vtk.write<std::int32_t>("Offsets", geometry.offsets);
+  vtk.write<std::uint8_t>("Types", geometry.types);
+}
+
 void write_vtk(const Run& run, const io::Hdf5Group& file, const io::Hdf5Group& elrom) {
   const auto vtk = file.create_group("VTKHDF");
   const std::int64_t version[] = {1, 0};
   vtk.set_text("Type", "UnstructuredGrid");
   vtk.set_integers("Version", version);
-  const auto& geometry = run.geometry;
-  const auto count = [&](const char* name, std::size_t n) {
-    const std::int64_t value[] = {static_cast<std::int64_t>(n)};
-    vtk.write<std::int64_t>(name, value);
-  };
-  count("NumberOfPoints", geometry.points.size() / 3);
-  count("NumberOfCells", run.cells.size());
-  count("NumberOfConnectivityIds", geometry.connectivity.size());
-  vtk.write<float>("Points", geometry.points, {geometry.points.size() / 3, 3});
-  vtk.write<std::int32_t>("Connectivity", geometry.connectivity);
-  vtk.write<std::int32_t>("Offsets", geometry.offsets);
-  vtk.write<std::uint8_t>("Types", geometry.types);
+  write_geometry(run, vtk);
   const auto cell_data = vtk.create_group("CellData");
   show_fields(run, elrom, "fields", "", cell_data);
   if (run.level) show_fields(run, elrom, "half_width", "_half_width", cell_data);

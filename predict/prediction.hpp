@@ -9,16 +9,24 @@
 #include "cells.hpp"
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/io/tensor_file.hpp"
 #include "elrom/model/guard.hpp"
 
 namespace elrom::predict {
+
+/// The whole mesh as the bundle has it packed for HDF5.
+struct PackedGeometry {
+  io::Tensor centre, points, connectivity, offsets, types;
+  std::size_t n_points = 0;
+};
 
 /// Shared by all cases of a run.
 struct Run {
   std::vector<field::FieldInfo> fields;
   field::InputSchema schema;
   Cells cells;
-  CellGeometry geometry;                ///< empty for profiles
+  CellGeometry geometry;                 ///< empty for profiles, and where `packed` is enough
+  std::optional<PackedGeometry> packed;  ///< set when all cells are written and the bundle has it
   std::optional<PlaneAverage> average;  ///< set: values are plane averages
   std::optional<double> level;          ///< set: half-widths are there
   std::string bundle_digest, mesh_digest, bundle_program, method;

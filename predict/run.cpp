@@ -58,6 +58,19 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
     throw SystemError({.what = "cannot write", .where = path.string(), .advice = "is the disk full?"});
 }
 
+/// Bundles of format 1.0 may lack it: then the mesh itself is written.
+std::optional<PackedGeometry> packed_geometry(const model::BundleReader& bundle) {
+  const auto& file = bundle.file();
+  if (!file.has("mesh/packed/points")) return std::nullopt;
+  const auto part = [&](const char* name) { return file.tensor(std::string("mesh/packed/") + name); };
+  return PackedGeometry{.centre = part("centre"),
+                        .points = part("points"),
+                        .connectivity = part("connectivity"),
+                        .offsets = part("offsets"),
+                        .types = part("types"),
+                        .n_points = file.tensor("mesh/points").shape().at(0)};
+}
+
 /// What one thread needs for one case at a time; reused, so that a long table runs in flat memory.
 struct Desk {
   model::Predictor::Scratch scratch;
@@ -74,7 +87,8 @@ class Session {
   int predict_all();
 
  private:
-  void prepare(const field::Mesh& mesh, Cells cells);
+  void load_geometry(const model::BundleReader& bundle);
+  void prepare();
   void predict_case(std::size_t i, Desk& desk, int n_threads);
   [[nodiscard]] std::span<const float> choose(std::span<const float> predicted, std::vector<float>& chosen,
                                               bool average) const;
@@ -101,13 +115,10 @@ Session::Session(const Arguments& arguments)
   lap_.lap();
   model::BundleReader bundle(arguments_.bundle);
   cases_ = case_list(arguments_, bundle.info().schema);
-  const auto planes = parse_planes(arguments_.planes, bundle.n_planes());
-  const auto box = arguments_.region.empty() ? std::nullopt : std::optional(parse_box(arguments_.region));
-  const auto mesh = bundle.mesh(arguments_.verify);
-  auto cells = choose_cells(mesh, planes, box);
+  load_geometry(bundle);
   timing_.open = lap_.lap();
   model::Selection selection{.fields = arguments_.fields,
-                             .planes = cells.planes,
+                             .planes = run_.cells.planes,
                              .best_build_only = arguments_.best_build_only,
                              .interval_level = arguments_.level,
                              .verify = arguments_.verify,
@@ -116,26 +127,39 @@ Session::Session(const Arguments& arguments)
   timing_.verify = predictor_->load_times().verify;
   timing_.build = predictor_->load_times().build;
   lap_.lap();
-  prepare(mesh, std::move(cells));
+  prepare();
   timing_.prepare = lap_.lap();
 }
 
-void Session::prepare(const field::Mesh& mesh, Cells cells) {
+/// The mesh is read only where something of it has to be chosen, averaged or printed.
+void Session::load_geometry(const model::BundleReader& bundle) {
+  const bool everything = arguments_.planes.empty() && arguments_.region.empty() && !arguments_.profile;
+  if (everything) run_.packed = packed_geometry(bundle);
+  if (run_.packed && arguments_.formats == std::vector{Format::hdf}) {
+    run_.cells = all_cells(bundle.n_planes(), bundle.n_columns());
+    return;
+  }
+  const auto planes = parse_planes(arguments_.planes, bundle.n_planes());
+  const auto box = arguments_.region.empty() ? std::nullopt : std::optional(parse_box(arguments_.region));
+  const auto mesh = bundle.mesh(arguments_.verify);
+  run_.cells = choose_cells(mesh, planes, box);
+  if (arguments_.profile) {
+    run_.average.emplace(mesh, run_.cells);
+  } else {
+    run_.geometry = geometry_of(mesh, run_.cells);
+  }
+}
+
+void Session::prepare() {
   const auto& bundle = predictor_->bundle();
   run_.fields = predictor_->fields();
   run_.schema = bundle.info().schema;
-  run_.cells = std::move(cells);
   run_.level = arguments_.level;
   run_.bundle_digest = bundle.digest();
   run_.mesh_digest = bundle.mesh_digest();
   run_.bundle_program = bundle.file().text("program");
   run_.method = bundle.info().method;
   run_.best_build_only = arguments_.best_build_only;
-  if (arguments_.profile) {
-    run_.average.emplace(mesh, run_.cells);
-  } else {
-    run_.geometry = geometry_of(mesh, run_.cells);
-  }
   if (!arguments_.to_standard_output()) std::filesystem::create_directories(arguments_.output);
   lines_.emplace(cases_.size(), arguments_.to_standard_output() ? stderr : stdout);
 }

@@ -8,6 +8,7 @@
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
+#include "packed_mesh.hpp"
 
 namespace elrom::model {
 namespace {
@@ -95,6 +96,7 @@ void Bundle::write(const std::filesystem::path& path) const {
   file.set_text("program", program_version());
   file.set_text("bundle", to_json({info, mesh.n_planes, mesh.n_columns, mesh.digest()}));
   save_mesh(file, mesh);
+  save_packed_mesh(file, mesh);
   guard.save(file, "guard");
   for (const auto& [name, model] : models) model->save(file, field_prefix(name));
   for (const auto& [name, interval] : uncertainty) {
@@ -113,7 +115,9 @@ BundleReader::BundleReader(const std::filesystem::path& path) : file_(io::Tensor
 }
 
 field::Mesh BundleReader::mesh(bool verify) const {
-  if (verify) verify_prefix(file_, "mesh");
+  if (verify) {
+    for (const char* part : {"mesh/centre", "mesh/volume", "mesh/points", "mesh/corners"}) file_.verify(part);
+  }
   field::Mesh mesh;
   mesh.n_planes = n_planes_;
   mesh.n_columns = n_columns_;
@@ -140,6 +144,7 @@ field::Mesh BundleReader::mesh(bool verify) const {
 void BundleReader::verify(std::span<const field::FieldInfo> fields, bool with_uncertainty,
                           int n_threads) const {
   auto names = tensors_under(file_, "guard");
+  for (auto& name : tensors_under(file_, "mesh/packed")) names.push_back(std::move(name));
   for (const auto& info : fields) {
     for (auto& name : tensors_under(file_, field_prefix(info.name))) names.push_back(std::move(name));
     if (!with_uncertainty) continue;

@@ -142,7 +142,9 @@ Floor floor_of(const std::filesystem::path& bundle, const std::filesystem::path&
   const model::BundleReader reader(bundle);
   Floor floor;
   for (const auto& [name, tensor] : reader.file().tensors()) {
-    if (!name.starts_with("uncertainty/")) floor.bytes_read += static_cast<double>(tensor.bytes().size());
+    const bool read =
+        name.starts_with("fields/") || name.starts_with("guard/") || name.starts_with("mesh/packed/");
+    if (read) floor.bytes_read += static_cast<double>(tensor.bytes().size());
   }
   for (const auto& entry : std::filesystem::directory_iterator(output)) {
     if (entry.path().extension() == ".hdf") floor.bytes_written = static_cast<double>(entry.file_size());

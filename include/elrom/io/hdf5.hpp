@@ -39,6 +39,10 @@ struct Hdf5Storage {
   [[nodiscard]] static Hdf5Storage packed(const Shape& shape, int level = 4);
 };
 
+/// A whole dataset as one chunk the way the file keeps it: shuffled and deflated. For
+/// Hdf5Group::write_packed.
+[[nodiscard]] std::vector<std::uint8_t> pack_chunk(std::span<const std::byte> values, std::size_t value_size);
+
 /// Owner of one HDF5 identifier; closes it by its kind.
 class Hdf5Id {
  public:
@@ -129,6 +133,10 @@ class Hdf5Group : public Hdf5Object {
   template <class T>
   Hdf5Dataset write(const std::string& name, std::span<const T> values, const Shape& shape = {},
                     const Hdf5Storage& storage = {}) const;
+  /// The same for values that pack_chunk() has packed: nothing is left to do but to copy the bytes.
+  template <class T>
+  Hdf5Dataset write_packed(const std::string& name, const Shape& shape,
+                           std::span<const std::uint8_t> chunk) const;
   Hdf5Dataset write_texts(const std::string& name, const std::vector<std::string>& values) const;
   /// A second name for an existing object of the same file; `target` is an absolute path.
   void hard_link(const std::string& target, const std::string& name) const;
