@@ -180,8 +180,8 @@ class Benchmark {
     }
     std::filesystem::create_directories(setup.output);
     const auto timings = show("the same networks in LibTorch, one shot",
-                              {program.string(), setup.bundle.string(), setup.one_case.string(),
-                               (setup.output / "libtorch.raw").string()},
+                              {program.string(), "--bundle", setup.bundle.string(), "--cases",
+                               setup.one_case.string(), "--output", (setup.output / "libtorch.raw").string()},
                               options_.small ? 3 : 7);
     result_["libtorch_one_shot_ms"] = timings.median_ms;
     result_["ratio_to_libtorch"] = timings.median_ms / one_shot_.median_ms;
