@@ -54,7 +54,7 @@ class MirrorAveraged final : public study::Method {
   }
   [[nodiscard]] MatrixF cross_predict(const study::FieldData& data, const study::Folds& folds,
                                       const study::FitContext& context) const override {
-    return study::cross_predict_by_fitting(*this, data, folds, context, true);
+    return study::cross_predict_by_fitting(*this, data, folds, context, false);
   }
 
  private:

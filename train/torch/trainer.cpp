@@ -22,7 +22,8 @@ constexpr double back_off = 0.1;
     throw NotBuiltError(Problem{"no CUDA device in this LibTorch", {}, name, {}, "use --device cpu"});
   try {
     const ::torch::Device device(name);
-    if (device.has_index() && static_cast<std::size_t>(device.index()) >= ::torch::cuda::device_count())
+    if (device.has_index() &&
+        static_cast<std::size_t>(device.index()) >= static_cast<std::size_t>(::torch::cuda::device_count()))
       throw UsageError(
           {"no such device", {}, name, std::to_string(::torch::cuda::device_count()) + " devices"});
     return device;
