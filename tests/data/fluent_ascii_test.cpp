@@ -10,7 +10,7 @@
 #include "elrom/field/catalogue.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "hdf5_values.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -66,7 +66,7 @@ TEST(FluentAscii, SpaceSeparatedFileHoldsTheSameCaseAsItsEl3dExport) {
 }
 
 TEST(FluentAscii, UnitsInHeadingsAreConverted) {
-  const elrom::testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto path =
       folder.write("a.csv",
                    "x [mm],y [m],z [m],volume [m3],solid_velocity_x [cm/s],solid_velocity_y,solid_velocity_z,"
@@ -84,7 +84,7 @@ TEST(FluentAscii, UnitsInHeadingsAreConverted) {
 }
 
 std::string message_of(const std::string& text) {
-  const elrom::testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto path = folder.write("bad.txt", text);
   try {
     (void)read_fluent_ascii(path);

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "elrom/base/error.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -22,7 +22,7 @@ class FoamFileOf {
   }
 
  private:
-  elrom::testing::TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
   std::filesystem::path path_;
 };
 

@@ -3,13 +3,13 @@
 #include <gmock/gmock.h>
 
 #include "elrom/base/error.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::ingest {
 namespace {
 
 /// Two hexahedra on each other: widths in x are 2 at z = 0, 4 at z = 1 and 4 at z = 2; depth 1 in y.
-void write_two_cells(const elrom::testing::TemporaryFolder& folder) {
+void write_two_cells(const test::TemporaryFolder& folder) {
   folder.write("points",
                "12((1 0 0)(3 0 0)(3 1 0)(1 1 0)(0 0 1)(4 0 1)(4 1 1)(0 1 1)(0 0 2)(4 0 2)(4 1 2)(0 1 2))");
   folder.write("faces",
@@ -21,7 +21,7 @@ void write_two_cells(const elrom::testing::TemporaryFolder& folder) {
 }
 
 TEST(FoamMesh, VolumesAndCentresOfAPrismAndABox) {
-  const elrom::testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   write_two_cells(folder);
 
   const auto mesh = read_poly_mesh(folder.path());
@@ -35,7 +35,7 @@ TEST(FoamMesh, VolumesAndCentresOfAPrismAndABox) {
 }
 
 TEST(FoamMesh, InsideOutCellIsRefused) {
-  const elrom::testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   write_two_cells(folder);
   folder.write("points",
                "12((1 0 2)(3 0 2)(3 1 2)(1 1 2)(0 0 1)(4 0 1)(4 1 1)(0 1 1)(0 0 0)(4 0 0)(4 1 0)(0 1 0))");
@@ -45,7 +45,7 @@ TEST(FoamMesh, InsideOutCellIsRefused) {
 }
 
 TEST(FoamMesh, PointsAndCellsOutOfRangeAreRefused) {
-  const elrom::testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   write_two_cells(folder);
   folder.write("neighbour", "1(77)");
   EXPECT_THAT([&] { (void)read_poly_mesh(folder.path()); },

@@ -6,7 +6,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "hdf5_values.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -96,7 +96,7 @@ class CaseCopy {
   }
 
  private:
-  elrom::testing::TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST(OpenFoam, DamagedCasesAreRefusedByFile) {
@@ -131,7 +131,7 @@ TEST(OpenFoam, InstantWithoutItsCloudIsRefused) {
 }
 
 TEST(OpenFoam, PositionsServeWhereCoordinatesAreMissing) {
-  const elrom::testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   // One cubic cell of 1 m3, one parcel of 6 / pi particles of 0.1 m: parcel volume 0.001 m3.
   folder.write("constant/polyMesh/points", "8((0 0 0)(1 0 0)(1 1 0)(0 1 0)(0 0 1)(1 0 1)(1 1 1)(0 1 1))");
   folder.write("constant/polyMesh/faces", "6(4(0 3 2 1)4(4 5 6 7)4(0 1 5 4)4(1 2 6 5)4(2 3 7 6)4(3 0 4 7))");

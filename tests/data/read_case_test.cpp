@@ -5,7 +5,7 @@
 #include "../../data/case_files.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/cfd_case.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -35,7 +35,7 @@ TEST(ReadCase, MissingFilesAndOtherDirectoriesAreRefused) {
 // Every length ends in an InputError that names the file; the test would die with a crash inside the HDF5
 // library.
 TEST(ReadCase, TruncatedExportsAreRefusedAtEveryLength) {
-  const elrom::testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto whole = bytes_of(data / "cases/train_000.h5");
   constexpr std::size_t n_lengths = 40;
 
@@ -47,7 +47,7 @@ TEST(ReadCase, TruncatedExportsAreRefusedAtEveryLength) {
 }
 
 TEST(ReadCase, OnlyStoresAreTakenForStores) {
-  const elrom::testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
 
   EXPECT_FALSE(is_snapshot_store(data / "cases/train_000.h5"));
   EXPECT_FALSE(is_snapshot_store(data / "cases/cases.csv"));
