@@ -87,8 +87,8 @@ std::string v1_v2_table(const LearningCurve& curve) {
     return fmt::format("  {:<24}{:>10}{:>10}{:>8.1f} %\n", name, score_text(v1, 4), score_text(v2, 4),
                        100 * (v2 / v1 - 1));
   };
-  for (const auto& [field, v2] : curve.v2.field_error)
-    text += row(field_label(field), curve.v1.field_error.at(field), v2);
+  for (const auto& field : in_usual_order(curve.v2.field_error))
+    text += row(field_label(field), curve.v1.field_error.at(field), curve.v2.field_error.at(field));
   return text + "  " + std::string(54, '-') + '\n' + row("mean", curve.v1.error_mean, curve.v2.error_mean);
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "elrom/field/catalogue.hpp"
+
 namespace elrom::report {
 
 std::string method_label(const std::string& name) {
@@ -35,6 +37,15 @@ std::string percent_text(double share, int decimals) {
 std::string value_text(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "-";
   return unit == "1" || unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+}
+
+std::vector<std::string> in_usual_order(const std::map<std::string, double>& by_field) {
+  std::vector<std::string> names;
+  for (const auto& info : field::standard_fields())
+    if (by_field.contains(info.name)) names.push_back(info.name);
+  for (const auto& [name, value] : by_field)
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  return names;
 }
 
 ShownUnit shown_unit(const std::string& field, const std::string& unit) {

@@ -1,7 +1,9 @@
 #pragma once
 // How methods, fields and numbers are written in reports.
 
+#include <map>
 #include <string>
+#include <vector>
 
 namespace elrom::report {
 
@@ -15,6 +17,9 @@ namespace elrom::report {
 [[nodiscard]] std::string percent_text(double share, int decimals = 1);
 /// Four significant digits with the unit; velocities and pressures as they are, diameters in micrometres.
 [[nodiscard]] std::string value_text(double value, const std::string& unit);
+
+/// Names in the usual order (velocities, pressure, diameter, fraction), others after them.
+[[nodiscard]] std::vector<std::string> in_usual_order(const std::map<std::string, double>& by_field);
 
 /// Unit to show a field in, and the factor from SI to it.
 struct ShownUnit {

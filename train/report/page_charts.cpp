@@ -260,7 +260,7 @@ std::string budget_section(const AccuracyReport& report) {
       report.repeats.empty() ? "Parts of NRMSE&sup2;. Without repeated runs the noise of the truth is not "
                                "known; it is inside the other two."
                              : "Parts of NRMSE&sup2;. The noise of the truth is measured by repeated runs of "
-                               "the same boundary conditions; no model can go below it.",
+                               "the same boundary conditions; about the least that any model can reach.",
       svg::bars(rows, "share of the departure from the training mean (NRMSE squared)", "Error budget", 860) +
           legend);
 }

@@ -28,6 +28,8 @@ std::string cost_chart(const CostReport& cost, const std::string& label,
     times.push_back(time(point));
     errors.push_back(point.error);
   }
+  if (std::none_of(times.begin(), times.end(), [](double t) { return std::isfinite(t); }))
+    return "<p class=\"lead\">not kept</p>";
   svg::Chart chart({.width = 540, .height = 340, .right = 110}, svg::fit_axis(label, times, 1.0),
                    svg::fit_axis("mean NRMSE", errors), "Error against " + label);
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -153,8 +155,8 @@ std::string learning_section(const LearningCurve& curve) {
   chart.line(cases, errors, "s0", "measured");
   chart.points(cases, errors, "s0", "training cases, error");
   std::string body;
-  for (const auto& [field, v2] : curve.v2.field_error) {
-    const double v1 = curve.v1.field_error.at(field);
+  for (const auto& field : in_usual_order(curve.v2.field_error)) {
+    const double v1 = curve.v1.field_error.at(field), v2 = curve.v2.field_error.at(field);
     body += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{:+.1f} %</td></tr>",
                         escape(field_label(field)), score_text(v1), score_text(v2), 100 * (v2 / v1 - 1));
   }
