@@ -91,8 +91,9 @@ std::string reason_text(const Assessment& assessment, double loneliest) {
     std::string text = assessment.out_of_range.front();
     const auto more = assessment.out_of_range.size() - 1;
     if (more > 0) text += " and " + std::to_string(more) + (more == 1 ? " other input" : " other inputs");
-    return text + (assessment.verdict == Verdict::outside ? " lies outside the trained range"
-                                                          : " lies just outside the trained range");
+    text += more > 0 ? " lie " : " lies ";
+    return text + (assessment.verdict == Verdict::outside ? "outside" : "just outside") +
+           " the trained range";
   }
   const std::string distance = base::rounded(assessment.distance, 3);
   if (assessment.verdict == Verdict::inside) {
