@@ -9,7 +9,7 @@ namespace elrom::train {
 
 #if ELROM_HAS_TORCH
 study::Toolbox make_toolbox(const study::Settings& settings) {
-  return {.trainer = elrom::torch::make_torch_trainer(settings.device), .make_method = {}};
+  return {.trainer = elrom::torch::make_torch_trainer(settings.device)};
 }
 #else
 study::Toolbox make_toolbox(const study::Settings& settings) {

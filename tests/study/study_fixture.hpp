@@ -1,7 +1,5 @@
 #pragma once
-// A small store of smooth cases, and a folder that goes away with the test.
-
-#include <unistd.h>
+// A small store of smooth cases.
 
 #include <cmath>
 #include <filesystem>
@@ -12,20 +10,6 @@
 #include "elrom/field/snapshot_store.hpp"
 
 namespace elrom::study {
-
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / (name + "_" + std::to_string(::getpid()))) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Cases with loads from 0.4 to 1.0; field values are smooth functions of load, a second input, height and
 /// column. Every fifth case is named "load_*", as held-out cases are.

@@ -12,6 +12,7 @@
 #include "elrom/model/predictor.hpp"
 #include "elrom/study/split.hpp"
 #include "study_fixture.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::study {
 namespace {
@@ -51,15 +52,14 @@ class SmallStudy : public ::testing::Test {
                           "peers.methods=[\"nearest\", \"linear\"]", "peers.folds=3"});
   }
   std::vector<FieldOutcome> run(const std::string& method) {
-    return Study(folder.path(), settings(method), {.trainer = trainer, .make_method = {}}, silent_log(), {})
-        .run();
+    return Study(folder.path(), settings(method), {.trainer = trainer}, silent_log(), {}).run();
   }
   std::string bundle_digest() const { return base::sha256_file(folder.path() / "model.elrom"); }
   nlohmann::json timing() const {
     return nlohmann::json::parse(base::read_text(folder.path() / "timing.json"));
   }
 
-  TemporaryFolder folder{"study"};
+  test::TemporaryFolder folder;
   std::shared_ptr<MeanTrainer> trainer = std::make_shared<MeanTrainer>();
 };
 
@@ -145,7 +145,7 @@ TEST_F(SmallStudy, ThreadsDoNotChangeTheBundle) {
   auto one_thread = settings("networks");
   one_thread.threads = 1;
 
-  Study(folder.path(), one_thread, {.trainer = trainer, .make_method = {}}, silent_log(), {}).run();
+  Study(folder.path(), one_thread, {.trainer = trainer}, silent_log(), {}).run();
 
   EXPECT_EQ(bundle_digest(), two);
 }
@@ -167,7 +167,7 @@ TEST_F(SmallStudy, PlaneScopeAnswersForEveryCell) {
   auto by_plane = settings("networks");
   by_plane.bands.scope = "plane";
 
-  Study(folder.path(), by_plane, {.trainer = trainer, .make_method = {}}, silent_log(), {}).fit();
+  Study(folder.path(), by_plane, {.trainer = trainer}, silent_log(), {}).fit();
 
   const model::Predictor predictor(folder.path() / "model.elrom");
   std::vector<float> values(predictor.size());
@@ -206,7 +206,7 @@ TEST_F(SmallStudy, RetrainingReusesTheEarlierPlan) {
   run("networks");
   write_small_store(folder.path() / "snapshots.h5", 4, 20);
   trainer->calls = 0;
-  Study study(folder.path(), settings("networks"), {.trainer = trainer, .make_method = {}}, silent_log(), {});
+  Study study(folder.path(), settings("networks"), {.trainer = trainer}, silent_log(), {});
   study.reuse_plans_of(model::BundleReader(folder.path() / "model.elrom").info().cases);
 
   study.fit(folder.path() / "candidate.elrom");

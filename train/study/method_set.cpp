@@ -42,13 +42,8 @@ MethodSet::MethodSet(const Settings& settings, Toolbox toolbox, const StageCache
 std::unique_ptr<Method> MethodSet::make(const std::string& name) const {
   if (is_peer(name)) return make_peer(name);
   if (name == "kernel") return make_kernel_method();
-  if (needs_trainer(name) && !has_networks()) throw no_trainer(name);
-  if (name == "networks")
-    return std::make_unique<NetworksMethod>(settings_, toolbox_.trainer, cache_, trials_);
   if (name == "pod_mlp") return make_pod_mlp(toolbox_.trainer, pod_mlp_options(settings_));
-  auto method = toolbox_.make_method ? toolbox_.make_method(name, settings_) : nullptr;
-  if (!method) throw UsageError({.what = "unknown method '" + name + "'", .where = "method"});
-  return method;
+  throw UsageError({.what = "unknown method '" + name + "'", .where = "method"});
 }
 
 const Method& MethodSet::get(const std::string& name) {

@@ -10,11 +10,12 @@
 namespace elrom::study {
 namespace {
 
-// What the bundle is made of; no time of day, so that the same study gives the same bytes.
+// What the bundle is made of, by the inputs of its stages; no time of day, so that the same study gives the
+// same bytes.
 std::string content_digest(const StudyBundle& bundle, const std::map<std::string, FieldStage>& stages) {
   base::Sha256 digest;
   digest.add(bundle.method).add(bundle.store_digest).add(bundle.settings_digest).add(program_version());
-  for (const auto& [field, stage] : stages) digest.add(field).add(stage.file.digest());
+  for (const auto& [field, stage] : stages) digest.add(field).add(stage.file.text("stage_digest"));
   return digest.hex();
 }
 

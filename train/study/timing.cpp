@@ -31,7 +31,7 @@ void write_timing(const std::filesystem::path& path, const std::map<std::string,
   std::int64_t reused = 0;
   for (const auto& [stage, entry] : entries) {
     stages[stage] = {{"seconds", entry.seconds}, {"computed", entry.computed}, {"reused", entry.reused}};
-    reused += entry.reused;
+    if (stage == "model") reused += entry.reused;  // within a run, models share what earlier stages kept
   }
   nlohmann::ordered_json json{{"kind", "elrom-timing"},
                               {"format", {1, 0}},

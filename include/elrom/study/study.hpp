@@ -9,7 +9,6 @@
 //   seconds a stage
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <stop_token>
@@ -30,8 +29,6 @@ namespace elrom::study {
 /// What a study builds with beside its own methods; filled by the program.
 struct Toolbox {
   std::shared_ptr<const Trainer> trainer;  ///< nullptr: LibTorch was left out of this build
-  /// Methods that live outside of elrom::study ("pod_mlp"); nullptr for an unknown name.
-  std::function<std::unique_ptr<Method>(const std::string& name, const Settings& settings)> make_method;
 };
 
 /// What a run found for one field.

@@ -1,0 +1,69 @@
+// The program as a script meets it: exit statuses and single lines of error.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "study_fixture.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace elrom::study {
+namespace {
+
+class ElromTrain : public ::testing::Test {
+ protected:
+  int run(const std::string& arguments) {
+    const auto command = std::string(ELROM_BIN_DIR "/elrom-train ") + arguments + " > " +
+                         (folder.path() / "out").string() + " 2> " + (folder.path() / "err").string();
+    const int status = std::system(command.c_str());
+    out = test::read_bytes(folder.path() / "out");
+    error = test::read_bytes(folder.path() / "err");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  [[nodiscard]] std::string study() const { return (folder.path() / "study").string(); }
+  [[nodiscard]] std::string store() const { return (folder.path() / "snapshots.h5").string(); }
+
+  test::TemporaryFolder folder;
+  std::string out, error;
+};
+
+TEST_F(ElromTrain, HelpListsEverySetting) {
+  EXPECT_EQ(run("run --help"), 0);
+  EXPECT_THAT(out, ::testing::HasSubstr("screen.builds"));
+}
+
+TEST_F(ElromTrain, UsageErrorsEndWithTwo) {
+  EXPECT_EQ(run(""), 2);
+  EXPECT_EQ(run("run"), 2);
+  EXPECT_EQ(run("run " + study() + " --set screen.build=3"), 2);
+  EXPECT_THAT(error, ::testing::HasSubstr("screen.builds"));
+}
+
+TEST_F(ElromTrain, MissingStoreEndsWithThree) {
+  EXPECT_EQ(run("run " + study() + " --store nowhere.h5"), 3);
+  EXPECT_EQ(std::ranges::count(error, '\n'), 1) << error;
+}
+
+TEST_F(ElromTrain, RunThenStatusThenRetrain) {
+  write_small_store(store(), 15);
+  const auto arguments = study() + " --store " + store() +
+                         " -q --effort quick --set method=linear --set peers.networks=false " +
+                         "--set 'peers.methods=[\"nearest\"]'";
+  ASSERT_EQ(run("run " + arguments), 0) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("pressure"));
+  EXPECT_EQ(run("status " + study()), 0) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("model.elrom: linear, 2 fields, 12 cases"));
+  write_small_store(store(), 5, 15);
+
+  ASSERT_EQ(run("retrain " + arguments + " --json " + (folder.path() / "retrain.json").string()), 0) << error;
+
+  const auto json = test::read_bytes(folder.path() / "retrain.json");
+  for (const auto* key : {"seconds", "seconds_from_nothing", "error_before", "error_after", "promoted"}) {
+    EXPECT_THAT(json, ::testing::HasSubstr(key));
+  }
+}
+
+}  // namespace
+}  // namespace elrom::study
