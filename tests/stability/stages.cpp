@@ -10,8 +10,9 @@
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/model/predictor.hpp"
+#include "elrom/study/kernel_method.hpp"
+#include "elrom/study/networks_method.hpp"
 #include "elrom/study/peers.hpp"
-#include "elrom/study/screening.hpp"
 
 namespace elrom::stability {
 namespace {
@@ -78,36 +79,47 @@ std::string check(const HardData& data) {
   return {};
 }
 
-/// Records of the first field, standardised with care for what does not vary; every third case judges.
-study::ScreeningData screening_data(const HardData& data) {
-  study::ScreeningData records;
-  const auto n_planes = static_cast<Eigen::Index>(data.cases.mesh.n_planes);
-  const auto n_columns = static_cast<Eigen::Index>(data.cases.mesh.n_columns);
-  const auto n_cases = data.cases.inputs.rows();
-  records.n_planes = data.cases.mesh.n_planes;
-  records.inputs.resize(n_cases * n_planes, data.cases.inputs.cols() + 1);
-  records.targets.resize(n_cases * n_planes, n_columns);
-  for (Eigen::Index i = 0; i < n_cases; ++i) {
-    for (Eigen::Index p = 0; p < n_planes; ++p) {
-      const auto row = i * n_planes + p;
-      records.inputs.row(row) << data.cases.inputs.row(i).cast<float>(), static_cast<float>(p);
-      records.targets.row(row) = data.values[0].block(i, p * n_columns, 1, n_columns);
-      records.plane.push_back(static_cast<std::int32_t>(p));
-      records.case_of.push_back(static_cast<std::int32_t>(i));
-      records.part.push_back(i % 3 == 2   ? study::Part::test
-                             : i % 3 == 1 ? study::Part::validation
-                                          : study::Part::train);
-    }
-  }
-  return records;
+/// Small enough that every band of a hard field is searched and built within a second.
+study::Settings tiny_settings() {
+  study::Settings settings;
+  settings.threads = 1;
+  settings.screen.builds = 2;
+  settings.screen.max_epochs = 10;
+  settings.search.trials = 2;
+  settings.search.confirm = 1;
+  settings.search.confirm_seeds = 1;
+  settings.search.max_epochs = 5;
+  settings.search.n_units = {16, 32};
+  settings.fit.builds = 2;
+  settings.fit.max_epochs = 10;
+  return settings;
 }
 
 std::string screen(const HardData& data, const std::string& method) {
-  study::ScreenSettings settings;
-  settings.method = method;
-  settings.builds = 2;
-  const auto result = study::screen(screening_data(data), settings, {});
-  return result.error.allFinite() && result.build_error.allFinite() ? "" : "errors that are not finite";
+  auto settings = tiny_settings();
+  settings.screen.method = method;
+  const study::NetworksMethod networks(settings, nullptr);
+  std::vector<std::size_t> rows(data.cases.n_cases());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  for (std::size_t f = 0; f < data.fields.size(); ++f) {
+    const study::FieldData field{&data.cases, data.fields[f], data.values[f]};
+    const auto result = networks.screen_field(field, rows, {});
+    if (!result.error.allFinite() || !result.build_error.allFinite()) return "errors that are not finite";
+  }
+  return {};
+}
+
+struct NamedMethod {
+  std::string stage;
+  std::unique_ptr<study::Method> method;
+};
+
+/// Every method that needs no trainer.
+std::vector<NamedMethod> all_methods() {
+  std::vector<NamedMethod> methods;
+  for (const auto& name : study::peer_names()) methods.push_back({name, study::make_peer(name)});
+  methods.push_back({"kernel", study::make_kernel_method()});
+  return methods;
 }
 
 std::string wrong_values(const std::vector<float>& values, const std::vector<field::FieldInfo>& fields) {
@@ -121,9 +133,9 @@ std::string wrong_values(const std::vector<float>& values, const std::vector<fie
   return {};
 }
 
-std::string fit_and_predict(const HardData& data, const std::string& method, const fs::path& path) {
+std::string fit_and_predict(const HardData& data, const study::Method& method, const fs::path& path) {
   model::Bundle bundle;
-  bundle.info.method = method;
+  bundle.info.method = method.name();
   bundle.info.fields = data.fields;
   bundle.info.schema = data.cases.schema;
   bundle.info.cases = data.cases.names;
@@ -131,10 +143,9 @@ std::string fit_and_predict(const HardData& data, const std::string& method, con
   bundle.guard = model::Guard(data.cases.schema, data.cases.inputs, data.cases.names, data.cases.loads);
   std::vector<std::size_t> rows(data.cases.n_cases());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
-  const auto peer = study::make_peer(method);
   for (std::size_t f = 0; f < data.fields.size(); ++f) {
     const study::FieldData field{&data.cases, data.fields[f], data.values[f]};
-    bundle.models[data.fields[f].name] = peer->fit(field, rows, {});
+    bundle.models[data.fields[f].name] = method.fit(field, rows, {});
   }
   bundle.write(path);
 
@@ -202,15 +213,13 @@ std::vector<Outcome> send_through(const HardData& data, const fs::path& folder) 
   outcomes.push_back(attempt(data, "check", [&] { return check(data); }));
   if (data.must_be_refused) return outcomes;  // nothing behind the store ever sees it
   outcomes.push_back(attempt(data, "guard", [&] { return guard(data); }));
-  // Screening asks for cases to train, to stop by and to judge by; the split refuses fewer.
   for (const std::string method : {"fast", "networks"}) {
-    if (data.cases.n_cases() < 3) break;
     outcomes.push_back(attempt(data, "screen_" + method, [&] { return screen(data, method); }));
   }
-  for (const auto& method : study::peer_names()) {
-    outcomes.push_back(attempt(data, method, [&] {
-      return fit_and_predict(data, method, folder / (data.name + "_" + method + ".elrom"));
-    }));
+  for (const auto& [stage, method] : all_methods()) {
+    const auto path = folder / (data.name + "_" + stage + ".elrom");
+    outcomes.push_back(
+        attempt(data, stage, [&, &model = *method] { return fit_and_predict(data, model, path); }));
   }
   return outcomes;
 }

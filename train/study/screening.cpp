@@ -51,8 +51,11 @@ void check_data(const ScreeningData& data) {
   check(static_cast<std::size_t>(data.targets.rows()) == n && data.plane.size() == n &&
             data.part.size() == n && data.case_of.size() == n,
         "screening: every record has inputs, targets, plane, case and part");
-  check(!data.rows(Part::train).empty() && !data.rows(Part::validation).empty(),
-        "screening: records to train and to stop by");
+  if (data.rows(Part::train).empty() || data.rows(Part::validation).empty()) {
+    throw InputError({.what = "too few cases to screen with networks",
+                      .expected = "cases to train with and others to stop by",
+                      .advice = "give more cases, or ask for a method without networks"});
+  }
 }
 
 // Outcomes of all units, in the order of the units, put into tables of errors.
