@@ -37,6 +37,13 @@ MatrixXd cross_gram(const MatrixF& a, const MatrixF& b) {
   return gram;
 }
 
+/// Sum of squares over cases and cells.
+double energy_of(const MatrixF& values) {
+  double energy = 0;
+  for (Index i = 0; i < values.rows(); ++i) energy += values.row(i).cast<double>().squaredNorm();
+  return energy;
+}
+
 /// What one class of the field becomes: its modes, what predicts them, and the leave-one-out residuals.
 struct Part {
   model::SmootherCoefficients::Group group;
@@ -86,26 +93,28 @@ class KernelMethod final : public Method {
   [[nodiscard]] Part fit_symmetric(MatrixF centred, const MatrixD& z, const std::vector<Index>& used,
                                    const FieldData& data, int n_threads) const;
   [[nodiscard]] Part fit_antisymmetric(MatrixF values, const MatrixD& z, const std::vector<Index>& imbalances,
-                                       const model::SmootherKernel& symmetric, const FieldData& data,
-                                       int n_threads) const;
-  void make_modes(Part& part, const Smoother& smoother, const MatrixF& shrunk, std::size_t most_modes) const;
+                                       const model::SmootherKernel& symmetric, double may_drop,
+                                       const FieldData& data, int n_threads) const;
+  static void make_modes(Part& part, const Smoother& smoother, const MatrixF& shrunk, std::size_t most_modes,
+                         double may_drop);
 
   KernelOptions options_;
 };
 
 /// Basis of what the smoother can say: the principal directions of the fitted (not the noisy) cases.
+/// @param may_drop energy, summed over cases and cells, that the left-out directions may hold
 void KernelMethod::make_modes(Part& part, const Smoother& smoother, const MatrixF& shrunk,
-                              std::size_t most_modes) const {
+                              std::size_t most_modes, double may_drop) {
   const MatrixXd gram = cross_gram(shrunk, shrunk);
   const MatrixXd fitted = smoother.covariance * smoother.precision;  // H
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(fitted * gram * fitted.transpose());
   const VectorXd energies = solver.eigenvalues().reverse().cwiseMax(0);
   const double total = energies.sum();
   Index n = 0;
-  double kept = 0;
+  double left = total;
   while (n < energies.size() && n < static_cast<Index>(most_modes) && energies[n] > 1e-13 * total &&
-         kept < options_.mode_energy * total) {
-    kept += energies[n++];
+         left > may_drop) {
+    left -= energies[n++];
   }
   const MatrixXd directions = solver.eigenvectors().rowwise().reverse().leftCols(n) *
                               energies.head(n).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -145,13 +154,14 @@ Part KernelMethod::fit_symmetric(MatrixF centred, const MatrixD& z, const std::v
     }
   }
   shrinkage.apply(centred, n_threads);
-  make_modes(part, Smoother(part.group.kernel, z), centred, options_.most_modes);
+  make_modes(part, Smoother(part.group.kernel, z), centred, options_.most_modes,
+             options_.dropped * energy_of(part.residuals));
   return part;
 }
 
 Part KernelMethod::fit_antisymmetric(MatrixF values, const MatrixD& z, const std::vector<Index>& imbalances,
-                                     const model::SmootherKernel& symmetric, const FieldData& data,
-                                     int n_threads) const {
+                                     const model::SmootherKernel& symmetric, double may_drop,
+                                     const FieldData& data, int n_threads) const {
   Part part;
   const MatrixXd gram = cross_gram(values, values);
   if (imbalances.empty() || !(gram.trace() > 0)) return part.residuals = std::move(values), part;
@@ -165,7 +175,7 @@ Part KernelMethod::fit_antisymmetric(MatrixF values, const MatrixD& z, const std
   shrinkage.learn(predicted, values, {.spectral = false, .prior = 0}, n_threads);
   part.residuals = values - predicted;
   shrinkage.apply(values, n_threads);
-  make_modes(part, smoother, values, std::max<std::size_t>(options_.most_modes / 4, 1));
+  make_modes(part, smoother, values, std::max<std::size_t>(options_.most_modes / 4, 1), may_drop);
   return part;
 }
 
@@ -258,6 +268,7 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const FieldData& data,
 
   std::vector<Part> parts{fit_symmetric(std::move(symmetric), features.z, used, data, threads)};
   MatrixF residuals = std::move(parts.front().residuals);
+  const double may_drop = options_.dropped * energy_of(residuals);
   for (std::size_t c = 1; c < classes.size(); ++c) {
     if (context.stop.stop_requested()) throw Interrupted("kernel: stopped");
     MatrixF values = project(data, cases, classes[c], threads);
@@ -266,7 +277,7 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const FieldData& data,
       continue;
     }
     Part part = fit_antisymmetric(std::move(values), features.z, features.of_class(c),
-                                  parts.front().group.kernel, data, threads);
+                                  parts.front().group.kernel, may_drop, data, threads);
     residuals += part.residuals;
     part.residuals.resize(0, 0);
     if (!part.empty()) parts.push_back(std::move(part));
