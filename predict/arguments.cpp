@@ -31,6 +31,23 @@ constexpr const char* footer =
     "With --strict a\n"
     "case that is outside is not written, the other cases are, and the exit status is 4.\n"
     "\n"
+    "Physics: --audit compares what is written with the boundary conditions: solids in the fields against "
+    "the "
+    "inventory, gas\n"
+    "flow of every plane against the inlets' (mean and worst plane), net solid flow, pressure drop against "
+    "the "
+    "weight of the\n"
+    "solids, bounds. Numbers of every plane are in the .hdf file (/elrom/audit). --conserve brings the "
+    "solids "
+    "to the\n"
+    "inventory (input solids_inventory) and the gas flow of the planes between inlets and outlet to the "
+    "inlets', by the\n"
+    "smallest change of volume fraction (in proportion to it) and of gas velocity z, and says how large it "
+    "was; half-widths\n"
+    "stay as they are. Both need all planes and no region; of --fields, solid_volume_fraction and "
+    "gas_velocity_z, and for\n"
+    "--audit pressure and solid_velocity_z too.\n"
+    "\n"
     "Output: <folder>/<case>.hdf (HDF5: /elrom for scripts, /VTKHDF for ParaView 5.11 and later), .csv, .txt "
     "(columns for\n"
     "SFW3D) or .ip (Fluent interpolation file). Values are in SI. A file appears whole or not at all.\n"
@@ -82,6 +99,13 @@ void add_output_options(CLI::App& app, Arguments& arguments) {
                "do not write cases that are outside the trained range; exit status 4");
 }
 
+void add_physics_options(CLI::App& app, Arguments& arguments) {
+  app.add_flag("--audit", arguments.audit,
+               "print and keep each case's physics audit (see below); needs all cells");
+  app.add_flag("--conserve", arguments.conserve,
+               "change each case as little as possible until solids and gas are conserved; needs all cells");
+}
+
 void add_run_options(CLI::App& app, Arguments& arguments, bool& no_verify) {
   app.add_option("--threads", arguments.n_threads, "number of threads, 0: all processors")
       ->check(CLI::Range(0, 1024))
@@ -123,6 +147,7 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   add_input_options(app, arguments);
   add_selection_options(app, arguments, builds);
   add_output_options(app, arguments);
+  add_physics_options(app, arguments);
   add_run_options(app, arguments, no_verify);
   try {
     app.parse(argc, argv);

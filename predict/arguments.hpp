@@ -25,6 +25,8 @@ struct Arguments {
   std::optional<double> level;  ///< of the prediction intervals
   bool profile = false;
   bool strict = false;
+  bool audit = false;     ///< physics audit of every case, in the terminal and the file
+  bool conserve = false;  ///< smallest change to the input inventory and the inlets' gas flow
   bool timing = false;
   bool verify = true;
   int n_threads = 0;  ///< 0: all

@@ -5,11 +5,12 @@
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/io/hdf5.hpp"
+#include "physics_writer.hpp"
 
 namespace elrom::predict {
 namespace {
 
-constexpr FormatVersion prediction_format{1, 0};
+constexpr FormatVersion prediction_format{1, 1};
 
 /// A field's values: planes x columns, or, of a region, one cell after the other.
 io::Shape shape_of(const Run& run) {
@@ -132,6 +133,8 @@ void write_hdf(const Run& run, const Prediction& prediction, const std::filesyst
   write_fields(run, prediction, elrom.create_group(averages), prediction.values);
   if (run.level) write_fields(run, prediction, elrom.create_group("half_width"), prediction.half_width);
   write_mesh(run, elrom);
+  if (prediction.audit != nullptr) write_audit(*prediction.audit, elrom);
+  if (prediction.change != nullptr) write_change(*prediction.change, elrom);
   if (!run.average) write_vtk(run, file, elrom);
   file.close();
 }

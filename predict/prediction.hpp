@@ -10,6 +10,7 @@
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/field/catalogue.hpp"
 #include "elrom/io/tensor_file.hpp"
+#include "elrom/model/audit.hpp"
 #include "elrom/model/guard.hpp"
 
 namespace elrom::predict {
@@ -27,8 +28,8 @@ struct Run {
   Cells cells;
   CellGeometry geometry;                 ///< empty for profiles, and where `packed` is enough
   std::optional<PackedGeometry> packed;  ///< set when all cells are written and the bundle has it
-  std::optional<PlaneAverage> average;  ///< set: values are plane averages
-  std::optional<double> level;          ///< set: half-widths are there
+  std::optional<PlaneAverage> average;   ///< set: values are plane averages
+  std::optional<double> level;           ///< set: half-widths are there
   std::string bundle_digest, mesh_digest, bundle_program, method;
   bool best_build_only = false;
 
@@ -40,8 +41,10 @@ struct Run {
 struct Prediction {
   const field::CaseInputs* inputs = nullptr;
   const model::Assessment* assessment = nullptr;
-  std::span<const float> values;      //!< SI, (fields, n_values)
-  std::span<const float> half_width;  //!< the same; empty without a level
+  std::span<const float> values;                      //!< SI, (fields, n_values)
+  std::span<const float> half_width;                  //!< the same; empty without a level
+  const model::Audit* audit = nullptr;                ///< of all cells as written; null: not asked for
+  const model::ConservationChange* change = nullptr;  ///< what --conserve did; null: not asked for
 
   [[nodiscard]] std::span<const float> field(std::span<const float> all, const Run& run,
                                              std::size_t i) const {

@@ -14,6 +14,7 @@
 #include "elrom/base/parallel.hpp"
 #include "elrom/model/predictor.hpp"
 #include "hdf_writer.hpp"
+#include "physics.hpp"
 #include "report_lines.hpp"
 #include "text_writer.hpp"
 #include "timing.hpp"
@@ -76,6 +77,7 @@ struct Desk {
   model::Predictor::Scratch scratch;
   std::vector<float> values, half_width;         //!< as predicted
   std::vector<float> chosen, chosen_half_width;  //!< after region and averages
+  PhysicsResult physics;
   std::string text;
   double compute = 0, write = 0;
 };
@@ -101,6 +103,7 @@ class Session {
   double cached_ = 0;
   int n_threads_;
   std::vector<field::CaseInputs> cases_;
+  std::optional<Physics> physics_;  ///< only with --audit or --conserve
   std::optional<model::Predictor> predictor_;
   Run run_;
   std::optional<ReportLines> lines_;
@@ -116,6 +119,7 @@ Session::Session(const Arguments& arguments)
   model::BundleReader bundle(arguments_.bundle);
   cases_ = case_list(arguments_, bundle.info().schema);
   load_geometry(bundle);
+  if (arguments_.audit || arguments_.conserve) physics_.emplace(arguments_, bundle, run_.cells);
   timing_.open = lap_.lap();
   model::Selection selection{.fields = arguments_.fields,
                              .planes = run_.cells.planes,
@@ -226,17 +230,21 @@ void Session::predict_case(std::size_t i, Desk& desk, int n_threads) {
   desk.values.resize(predictor_->size());
   if (run_.level) desk.half_width.resize(predictor_->size());
   predictor_->predict(inputs.values, desk.values, desk.half_width, desk.scratch, n_threads);
+  if (physics_) desk.physics = physics_->apply(inputs, desk.values);
   const Prediction prediction{
       .inputs = &inputs,
       .assessment = &assessment,
       .values = choose(desk.values, desk.chosen, run_.average.has_value()),
-      .half_width = choose(desk.half_width, desk.chosen_half_width, run_.average.has_value())};
+      .half_width = choose(desk.half_width, desk.chosen_half_width, run_.average.has_value()),
+      .audit = desk.physics.audit ? &*desk.physics.audit : nullptr,
+      .change = desk.physics.change ? &*desk.physics.change : nullptr};
   desk.compute += lap.lap();
   for (const auto format : arguments_.formats) {
     write(format, prediction, desk);
     if (!arguments_.to_standard_output()) line += " -> " + target(format, inputs).string();
   }
   desk.write += lap.lap();
+  line += desk.physics.text();
   lines_->add(i, std::move(line));
 }
 

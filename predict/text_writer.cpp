@@ -77,6 +77,9 @@ void add_comment(const Run& run, const Prediction& prediction, std::string& text
           std::string(model::name_of(prediction.assessment->verdict)) + ": " + prediction.assessment->reason +
           "\n";
   if (run.level) text += "# half-widths of prediction intervals of level " + base::number(*run.level) + "\n";
+  if (prediction.change == nullptr) return;
+  for (const auto& line : base::split(model::to_text(*prediction.change), '\n'))
+    if (!line.empty()) text += "# conserved: " + line + "\n";
 }
 
 }  // namespace

@@ -89,11 +89,15 @@ void sum_solids(const CaseView& view, const AuditSettings& settings, const Audit
   result.solids_weight = weight;
 }
 
+bool has_gas_balance(const PlaneAudit& plane) {
+  return std::isfinite(plane.gas_inflow) && std::isfinite(plane.gas_flow) && plane.gas_inflow != 0;
+}
+
 std::optional<double> mean_gas_balance(const std::vector<PlaneAudit>& planes) {
   double sum = 0;
   int n = 0;
   for (const auto& plane : planes) {
-    if (!std::isfinite(plane.gas_inflow) || !std::isfinite(plane.gas_flow) || plane.gas_inflow == 0) continue;
+    if (!has_gas_balance(plane)) continue;
     sum += plane.gas_flow / plane.gas_inflow;
     ++n;
   }
@@ -125,6 +129,30 @@ AuditSettings shipped_furnace_audit() {
 bool Audit::within_bounds() const {
   return std::all_of(bounds.begin(), bounds.end(),
                      [](const BoundsAudit& b) { return b.n_outside == 0 && b.n_not_finite == 0; });
+}
+
+const PlaneAudit* Audit::worst_gas_plane() const {
+  const PlaneAudit* worst = nullptr;
+  const auto miss = [](const PlaneAudit& plane) { return std::abs(plane.gas_flow / plane.gas_inflow - 1); };
+  for (const auto& plane : planes)
+    if (has_gas_balance(plane) && (worst == nullptr || miss(plane) > miss(*worst))) worst = &plane;
+  return worst;
+}
+
+std::optional<FlowRange> Audit::net_solid_flow() const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  FlowRange range{.lowest = infinity, .mean = 0, .highest = -infinity};
+  int n = 0;
+  for (const auto& plane : planes) {
+    if (!std::isfinite(plane.gas_inflow) || !std::isfinite(plane.solid_flow)) continue;
+    range.lowest = std::min(range.lowest, plane.solid_flow);
+    range.highest = std::max(range.highest, plane.solid_flow);
+    range.mean += plane.solid_flow;
+    ++n;
+  }
+  if (n == 0) return std::nullopt;
+  range.mean /= n;
+  return range;
 }
 
 Audit audit(const CaseView& view, const AuditSettings& settings) {
@@ -164,6 +192,13 @@ std::string to_text(const Audit& audit) {
     text += fmt::format(
         "gas flow            {:>9.1f} % of the inlets' (mean over the planes between inlets and outlet)\n",
         100 * *audit.gas_balance);
+  if (const auto* worst = audit.worst_gas_plane())
+    text += fmt::format("worst plane         {:>9.1f} % of the inlets' at {:.1f} m ({:.1f} of {:.1f} kg/s)\n",
+                        100 * worst->gas_flow / worst->gas_inflow, worst->height, worst->gas_flow,
+                        worst->gas_inflow);
+  if (const auto solids = audit.net_solid_flow())
+    text += fmt::format("net solid flow      {:>9.1f} kg/s upward, {:.1f} to {:.1f} over the same planes\n",
+                        solids->mean, solids->lowest, solids->highest);
   if (audit.pressure_drop && audit.solids_weight)
     text += fmt::format("pressure drop       {:>9.0f} Pa; weight of the solids {:.0f} Pa\n",
                         *audit.pressure_drop, *audit.solids_weight);

@@ -1,6 +1,8 @@
 // Smallest-change repair: a weighted least-squares projection onto the conservation constraints.
 // Minimise sum V (d / s)^2 subject to sum a d = r: stationarity gives d = m s^2 a / V with one multiplier m.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -127,6 +129,20 @@ ConservationChange conserve(const CaseView& view, std::span<float> values, std::
   conserve_solids(view, values, scale, settings, result);
   conserve_gas(view, values, scale, settings, result);
   return result;
+}
+
+std::string to_text(const ConservationChange& change) {
+  std::string text;
+  if (change.solids_kg)
+    text += fmt::format(
+        "solids added        {:>+9.2f} t; volume fraction changed by {:.2g} (rms), {:.2g} % of it\n",
+        *change.solids_kg / 1000, change.volume_fraction_rms, 100 * change.volume_fraction_relative);
+  if (change.n_planes_balanced == 0)
+    return text + "gas flow            no plane has a balance; not changed\n";
+  return text + fmt::format(
+                    "gas flow            balanced in {} planes; velocity z changed by {:.2g} m/s (rms), "
+                    "{:.2g} % of it\n",
+                    change.n_planes_balanced, change.gas_velocity_rms, 100 * change.gas_velocity_relative);
 }
 
 }  // namespace elrom::model

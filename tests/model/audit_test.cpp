@@ -101,6 +101,23 @@ TEST(Audit, GasBalanceIsDrawnOnlyClearOfTheOpenings) {
   EXPECT_NEAR(*result.gas_balance, 6.0 / 5.0, 1e-6);
 }
 
+TEST(Audit, WorstPlaneAndNetSolidFlowAreOverTheBalancedPlanes) {
+  SmallCase c;
+  c.settings.outlet_low_m = 5;  // planes 2 and 3 are clear of the openings
+
+  const auto result = audit(c.view(), c.settings);
+
+  // Gas: 6 and 4.9 of 5 kg/s; solids: 0 and 2000 kg/m3 * 0.1 * 1 m/s * 1 m2.
+  ASSERT_NE(result.worst_gas_plane(), nullptr);
+  EXPECT_DOUBLE_EQ(result.worst_gas_plane()->height, 2.5);
+  const auto solids = result.net_solid_flow();
+  ASSERT_TRUE(solids.has_value());
+  EXPECT_NEAR(solids->lowest, 0, 1e-9);
+  EXPECT_NEAR(solids->mean, 100, 1e-3);
+  EXPECT_NEAR(solids->highest, 200, 1e-3);
+  EXPECT_THAT(to_text(result), testing::HasSubstr("120.0 % of the inlets' at 2.5 m (6.0 of 5.0 kg/s)"));
+}
+
 TEST(Audit, BoundsCountWhatIsOutsideAndWhatIsNotFinite) {
   SmallCase c;
   c.values[0] = 0.7F;
@@ -128,6 +145,8 @@ TEST(Audit, SaysNothingOfWhatIsNotThere) {
   EXPECT_FALSE(result.gas_density.has_value());
   EXPECT_FALSE(result.pressure_drop.has_value());
   EXPECT_TRUE(std::isnan(result.planes[0].gas_flow));
+  EXPECT_EQ(result.worst_gas_plane(), nullptr);
+  EXPECT_FALSE(result.net_solid_flow().has_value());
   EXPECT_TRUE(nlohmann::json::parse(to_json(result))["gas_balance"].is_null());
   EXPECT_THAT(to_text(result), testing::HasSubstr("inside its physical bounds"));
 }
@@ -146,6 +165,8 @@ TEST(Conserve, ReachesInventoryAndGasFlow) {
   EXPECT_NEAR(*change.solids_kg, 1200, 1e-2);
   EXPECT_EQ(change.n_planes_balanced, 1u);
   EXPECT_TRUE(after.within_bounds());
+  EXPECT_THAT(to_text(change), testing::HasSubstr("+1.20 t"));
+  EXPECT_THAT(to_text(change), testing::HasSubstr("balanced in 1 planes"));
 }
 
 TEST(Conserve, NoOtherChangeThatConservesIsSmaller) {

@@ -72,6 +72,10 @@ struct BoundsAudit {
   double lowest = 0, highest = 0;
 };
 
+struct FlowRange {
+  double lowest = 0, mean = 0, highest = 0;
+};
+
 struct Audit {
   std::optional<double> solids_kg;      ///< in the fields
   std::optional<double> inventory_kg;   ///< by the boundary conditions
@@ -82,6 +86,11 @@ struct Audit {
   std::vector<PlaneAudit> planes;       //!< (n_planes), bottom first
   std::vector<BoundsAudit> bounds;      //!< (fields)
   [[nodiscard]] bool within_bounds() const;
+  /// The plane whose gas flow misses the inlets' by the largest share; null when no plane has a balance.
+  [[nodiscard]] const PlaneAudit* worst_gas_plane() const;
+  /// Net upward solid flow over the planes clear of inlets and outlet [kg/s]; nothing when there are none. In
+  /// a steady average it is the same in all of them: what the cyclones return.
+  [[nodiscard]] std::optional<FlowRange> net_solid_flow() const;
 };
 
 [[nodiscard]] Audit audit(const CaseView& view, const AuditSettings& settings = shipped_furnace_audit());
@@ -99,6 +108,8 @@ struct ConservationChange {
   double gas_velocity_relative = 0;
   std::size_t n_planes_balanced = 0;
 };
+/// A few lines for a terminal.
+[[nodiscard]] std::string to_text(const ConservationChange& change);
 
 /// Changes `values` (layout of CaseView) as little as possible so that the solids sum to the input inventory
 /// and, in every plane with a balance, the gas flow equals the inlets' below. "Little" is sum V (change /
