@@ -73,7 +73,7 @@ double inflow_below(const CaseView& view, const AuditSettings& settings, const P
       if (plane.low + touch >= settled) {
         flow += view.inputs[i];
         any = true;
-      } else if (plane.high > inlet.z_low_m + touch) {
+      } else if (plane.high + margin > inlet.z_low_m + touch) {
         return none;
       }
     }

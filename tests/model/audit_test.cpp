@@ -101,6 +101,16 @@ TEST(Audit, GasBalanceIsDrawnOnlyClearOfTheOpenings) {
   EXPECT_NEAR(*result.gas_balance, 6.0 / 5.0, 1e-6);
 }
 
+TEST(Audit, AnInletDisturbsThePlaneBelowItToo) {
+  SmallCase c;
+  c.settings.inlets = {{"grid_*", 0, 0}, {"wall_*", 3, 3.5}};
+
+  const auto result = audit(c.view(), c.settings);
+
+  EXPECT_DOUBLE_EQ(result.planes[1].gas_inflow, 3);
+  EXPECT_TRUE(std::isnan(result.planes[2].gas_inflow));
+}
+
 TEST(Audit, WorstPlaneAndNetSolidFlowAreOverTheBalancedPlanes) {
   SmallCase c;
   c.settings.outlet_low_m = 5;  // planes 2 and 3 are clear of the openings
