@@ -45,7 +45,7 @@ TEST_F(SettingsFile, EffortIsAppliedBeforeTheOtherKeysOfTheFile) {
   const auto settings = read_settings(write("effort = \"quick\"\n[screen]\nbuilds = 4\n"));
 
   EXPECT_EQ(settings.screen.builds, 4);
-  EXPECT_EQ(settings.fit.builds, 3);
+  EXPECT_EQ(settings.search.trials, 4);
 }
 
 TEST_F(SettingsFile, CommandLineWinsOverTheFile) {
