@@ -10,8 +10,10 @@ endif()
 function(elrom_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
-                         -Wno-restrict  # GCC 12 false alarm in std::string (its bug 105329)
-                         -Wno-maybe-uninitialized)  # and in its AVX-512 intrinsics, through Eigen (its bug 105593)
+                         # GCC 12 false alarms: in std::string (its bug 105329) ...
+                         -Wno-restrict -Wno-stringop-overflow
+                         # ... and in its AVX-512 intrinsics, through Eigen (its bug 105593)
+                         -Wno-maybe-uninitialized -Wno-uninitialized)
   if(ELROM_NATIVE)
     # Public: Eigen's alignment follows the instruction set, and must be the same in every object of a program.
     target_compile_options(${target} PUBLIC $<BUILD_INTERFACE:-march=native>)
@@ -66,8 +68,7 @@ endfunction()
 function(elrom_test_options target)
   elrom_compile_options(${target})
   # The optimiser is the larger half of a test's compile time, and no test is about speed.
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>
-                         -Wno-stringop-overflow)  # GCC 12 false alarm in std::string at -O1
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${target} PRIVATE ELROM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ELROM_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
 endfunction()

@@ -16,6 +16,19 @@ void refuse(const std::string& where, const std::string& what, const io::Tensor&
   throw InputError({.what = what, .where = where, .found = shape_text(found), .expected = expected});
 }
 
+/// @throws InputError when the fold is of another mesh, or modes are of classes that it does not have
+void check_fold(const PodModel::Parts& parts, std::size_t n_modes, std::size_t n_columns,
+                const std::string& where) {
+  if (parts.fold.empty()) return;
+  const auto known = [&](std::int32_t c) {
+    return c >= 0 && static_cast<std::size_t>(c) < parts.fold.n_classes();
+  };
+  if (parts.fold.n_columns() != n_columns || parts.class_of_mode.size() != n_modes ||
+      !std::ranges::all_of(parts.class_of_mode, known)) {
+    throw InputError({.what = "symmetry fold does not fit mean and modes", .where = where});
+  }
+}
+
 /// out += sum over four modes; four at a time so that `out` is read and written once for four rows.
 void add_four(const float* modes, std::size_t n, const float* c, float* out) {
   const float *m0 = modes, *m1 = modes + n, *m2 = modes + 2 * n, *m3 = modes + 3 * n;
@@ -30,19 +43,24 @@ void add_square(const float* mode, std::size_t n, float variance, float* out) {
   for (std::size_t j = 0; j < n; ++j) out[j] += variance * (mode[j] * mode[j]);
 }
 
-/// (n_modes, n_planes * n_columns) to (n_planes, n_modes, n_columns).
-io::Tensor by_plane(const MatrixF& modes, std::size_t n_columns) {
+/// (n_modes, n_planes * n_columns) to (n_planes, n_modes, n_columns), or n_orbits for n_columns with a fold.
+io::Tensor by_plane(const MatrixF& modes, std::size_t n_columns, const SymmetryFold& fold) {
   const auto n_modes = static_cast<std::size_t>(modes.rows()),
              n_cells = static_cast<std::size_t>(modes.cols());
-  const std::size_t n_planes = n_cells / n_columns;
-  std::vector<float> ordered(n_modes * n_cells);
+  const std::size_t n_planes = n_cells / n_columns, n_stored = fold.empty() ? n_columns : fold.n_orbits();
+  std::vector<float> ordered(n_planes * n_modes * n_stored);
   for (std::size_t p = 0; p < n_planes; ++p) {
     for (std::size_t m = 0; m < n_modes; ++m) {
-      std::copy_n(modes.data() + m * n_cells + p * n_columns, n_columns,
-                  ordered.data() + (p * n_modes + m) * n_columns);
+      const std::span<const float> from(modes.data() + m * n_cells + p * n_columns, n_columns);
+      const std::span<float> to(ordered.data() + (p * n_modes + m) * n_stored, n_stored);
+      if (fold.empty()) {
+        std::ranges::copy(from, to.begin());
+      } else {
+        fold.pick(from, to);
+      }
     }
   }
-  return io::Tensor::copy(std::span<const float>(ordered), {n_planes, n_modes, n_columns});
+  return io::Tensor::copy(std::span<const float>(ordered), {n_planes, n_modes, n_stored});
 }
 
 io::Tensor cells(const Eigen::VectorXd& values, std::size_t n_columns) {
@@ -59,10 +77,12 @@ PodModel::PodModel(Parts parts, const std::string& where) : parts_(std::move(par
   n_planes_ = parts_.mean.shape()[0];
   n_columns_ = parts_.mean.shape()[1];
   n_modes_ = parts_.coefficients->n_coefficients();
-  if (parts_.modes.shape() != std::vector{n_planes_, n_modes_, n_columns_}) {
+  const std::size_t n_stored = parts_.fold.empty() ? n_columns_ : parts_.fold.n_orbits();
+  if (parts_.modes.shape() != std::vector{n_planes_, n_modes_, n_stored}) {
     refuse(where, "modes do not fit mean and coefficients", parts_.modes,
-           std::to_string(n_planes_) + " x " + std::to_string(n_modes_) + " x " + std::to_string(n_columns_));
+           std::to_string(n_planes_) + " x " + std::to_string(n_modes_) + " x " + std::to_string(n_stored));
   }
+  check_fold(parts_, n_modes_, n_columns_, where);
   if (!parts_.residual.empty() && parts_.residual.shape() != parts_.mean.shape()) {
     refuse(where, "residual does not fit the mean", parts_.residual, shape_text(parts_.mean));
   }
@@ -80,22 +100,42 @@ void PodModel::predict(const Query& query, std::span<float> values, std::span<fl
 
   const float* mean = parts_.mean.f32().data();
   const float* modes = parts_.modes.f32().data();
-  const std::size_t n = n_columns_;
+  const std::size_t n = n_columns_, plane_size = n_modes_ * parts_.modes.shape()[2];
+  const std::span<float> v = workspace.floats(variance.size());
+  std::ranges::transform(variance, v.begin(), [](double value) { return static_cast<float>(value); });
   for (std::size_t i = 0; i < query.planes.size(); ++i) {
     const auto plane = static_cast<std::size_t>(query.planes[i]);
-    const float* plane_modes = modes + plane * n_modes_ * n;
-    float* out = values.data() + i * n;
-    std::copy_n(mean + plane * n, n, out);
-    std::size_t m = 0;
-    for (; m + 4 <= n_modes_; m += 4) add_four(plane_modes + m * n, n, c.data() + m, out);
-    for (; m < n_modes_; ++m) add_one(plane_modes + m * n, n, c[m], out);
+    const auto out = values.subspan(i * n, n);
+    std::copy_n(mean + plane * n, n, out.begin());
+    add_modes(modes + plane * plane_size, c, false, out, workspace);
     if (spread.empty()) continue;
 
-    float* s = spread.data() + i * n;
-    std::fill_n(s, n, 0.0F);
-    if (!parts_.residual.empty()) add_square(parts_.residual.f32().data() + plane * n, n, 1.0F, s);
-    for (m = 0; m < n_modes_; ++m) add_square(plane_modes + m * n, n, static_cast<float>(variance[m]), s);
-    for (std::size_t j = 0; j < n; ++j) s[j] = std::sqrt(s[j]);
+    const auto s = spread.subspan(i * n, n);
+    std::ranges::fill(s, 0.0F);
+    if (!parts_.residual.empty()) add_square(parts_.residual.f32().data() + plane * n, n, 1.0F, s.data());
+    add_modes(modes + plane * plane_size, v, true, s, workspace);
+    for (float& deviation : s) deviation = std::sqrt(deviation);
+  }
+}
+
+void PodModel::add_modes(const float* modes, std::span<const float> weights, bool squares,
+                         std::span<float> out, Workspace& workspace) const {
+  const bool folded = !parts_.fold.empty();
+  const std::size_t n = parts_.modes.shape()[2];
+  const Workspace::Frame frame(workspace);
+  const auto sum = folded ? workspace.floats(n) : out;
+  // Runs of modes of one class; without a fold all modes are one run.
+  for (std::size_t begin = 0, end; begin < n_modes_; begin = end) {
+    end = folded ? begin + 1 : n_modes_;
+    while (end < n_modes_ && parts_.class_of_mode[end] == parts_.class_of_mode[begin]) ++end;
+    if (folded) std::ranges::fill(sum, 0.0F);
+    std::size_t m = begin;
+    for (; squares && m < end; ++m) add_square(modes + m * n, n, weights[m], sum.data());
+    for (; m + 4 <= end; m += 4) add_four(modes + m * n, n, weights.data() + m, sum.data());
+    for (; m < end; ++m) add_one(modes + m * n, n, weights[m], sum.data());
+    if (!folded) continue;
+    const auto i_class = static_cast<std::size_t>(parts_.class_of_mode[begin]);
+    squares ? parts_.fold.add_squares(i_class, sum, out) : parts_.fold.add(i_class, sum, out);
   }
 }
 
@@ -105,6 +145,11 @@ void PodModel::save(io::TensorFile& file, const std::string& prefix) const {
   file.set(prefix + "/modes", parts_.modes);
   if (!parts_.residual.empty()) file.set(prefix + "/residual", parts_.residual);
   parts_.coefficients->save(file, prefix + "/coefficients");
+  if (parts_.fold.empty()) return;
+  parts_.fold.save(file, prefix + "/fold");
+  file.set(
+      prefix + "/fold/class_of_mode",
+      io::Tensor::copy(std::span<const std::int32_t>(parts_.class_of_mode), {parts_.class_of_mode.size()}));
 }
 
 const std::vector<std::string>& PodModel::kinds() {
@@ -120,7 +165,13 @@ std::unique_ptr<FieldModel> PodModel::load(const io::TensorFile& file, const std
               .mean = file.tensor(prefix + "/mean", plane),
               .modes = file.tensor(prefix + "/modes", modes),
               .residual = {},
-              .coefficients = load_coefficient_model(file, prefix + "/coefficients")};
+              .coefficients = load_coefficient_model(file, prefix + "/coefficients"),
+              .fold = SymmetryFold::load(file, prefix + "/fold")};
+  if (!parts.fold.empty()) {
+    const std::array<std::size_t, 1> any{0};
+    const auto classes = file.tensor(prefix + "/fold/class_of_mode", any).i32();
+    parts.class_of_mode.assign(classes.begin(), classes.end());
+  }
   if (file.has(prefix + "/residual")) parts.residual = file.tensor(prefix + "/residual", plane);
   // Of the right type here, so that predict() never meets a wrong one.
   static_cast<void>(parts.mean.f32());
@@ -131,14 +182,17 @@ std::unique_ptr<FieldModel> PodModel::load(const io::TensorFile& file, const std
 
 std::unique_ptr<PodModel> make_pod_model(std::string kind, const Eigen::VectorXd& mean, const MatrixF& modes,
                                          const Eigen::VectorXd& residual, std::size_t n_columns,
-                                         std::shared_ptr<const CoefficientModel> coefficients) {
+                                         std::shared_ptr<const CoefficientModel> coefficients,
+                                         SymmetryFold fold, std::vector<std::int32_t> class_of_mode) {
   check(n_columns > 0 && mean.size() % static_cast<Eigen::Index>(n_columns) == 0, "columns divide the cells");
   return std::make_unique<PodModel>(
       PodModel::Parts{.kind = std::move(kind),
                       .mean = cells(mean, n_columns),
-                      .modes = by_plane(modes, n_columns),
+                      .modes = by_plane(modes, n_columns, fold),
                       .residual = residual.size() == 0 ? io::Tensor{} : cells(residual, n_columns),
-                      .coefficients = std::move(coefficients)});
+                      .coefficients = std::move(coefficients),
+                      .fold = std::move(fold),
+                      .class_of_mode = std::move(class_of_mode)});
 }
 
 }  // namespace elrom::model

@@ -49,6 +49,7 @@ struct Part {
   model::SmootherCoefficients::Group group;
   MatrixF modes;      // (n_modes, n_cells)
   MatrixF residuals;  // (n_cases, n_cells)
+  std::size_t i_class = 0;
   double left_out_variance =
       0;  // mean over cases of the latent variance when left out, in units of the signal
   [[nodiscard]] bool empty() const { return modes.rows() == 0; }
@@ -280,6 +281,7 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const FieldData& data,
                                   parts.front().group.kernel, may_drop, data, threads);
     residuals += part.residuals;
     part.residuals.resize(0, 0);
+    part.i_class = c;
     if (!part.empty()) parts.push_back(std::move(part));
   }
   const VectorXd residual = residual_deviation(residuals, parts);
@@ -287,11 +289,20 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const FieldData& data,
 
   std::vector<model::SmootherCoefficients::Group> groups;
   const MatrixF modes = stacked(parts, data.values.cols());
+  std::vector<std::int32_t> class_of_mode;
+  for (const Part& part : parts) {
+    class_of_mode.insert(class_of_mode.end(), static_cast<std::size_t>(part.modes.rows()),
+                         static_cast<std::int32_t>(part.i_class));
+  }
+  std::vector<std::vector<int>> signs;
+  for (const SymmetryClass& one : classes) signs.push_back(one.signs);
+  const field::Mesh& mesh = data.cases->mesh;
+  model::SymmetryFold fold(data.cases->mirrors, data.info.parity, signs, mesh.n_planes, mesh.n_columns);
   for (Part& part : parts) groups.push_back(std::move(part.group));
   auto coefficients = std::make_shared<model::SmootherCoefficients>(features.derived.map, features.scaler,
                                                                     features.z, std::move(groups));
-  return model::make_pod_model("kernel", mean, modes, residual, data.cases->mesh.n_columns,
-                               std::move(coefficients));
+  return model::make_pod_model("kernel", mean, modes, residual, mesh.n_columns, std::move(coefficients),
+                               std::move(fold), std::move(class_of_mode));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "elrom/model/coefficient_model.hpp"
 #include "elrom/model/field_model.hpp"
+#include "elrom/model/symmetry_fold.hpp"
 
 namespace elrom::model {
 
@@ -19,10 +20,12 @@ class PodModel final : public FieldModel {
   struct Parts {
     std::string kind;     ///< as in study.toml: "linear", "pod_gp", ...
     io::Tensor mean;      //!< SI, (n_planes, n_columns) f32
-    io::Tensor modes;     //!< (n_planes, n_modes, n_columns) f32
+    io::Tensor modes;     //!< (n_planes, n_modes, n_columns) f32; with a fold (n_planes, n_modes, n_orbits)
     io::Tensor residual;  //!< SI, standard deviation of what the modes leave out, (n_planes, n_columns) f32;
                           //!< may be empty
     std::shared_ptr<const CoefficientModel> coefficients;
+    SymmetryFold fold = {};                        ///< empty: modes are stored for every column
+    std::vector<std::int32_t> class_of_mode = {};  ///< class of the fold that each mode belongs to, (n_modes)
   };
   /// @throws InputError when shapes do not fit each other
   explicit PodModel(Parts parts, const std::string& where = "memory");
@@ -42,15 +45,22 @@ class PodModel final : public FieldModel {
                                                         const std::string& prefix);
 
  private:
+  /// out += sum over modes of weight * mode, or of weight * mode^2 for spreads. @param modes of one plane
+  void add_modes(const float* modes, std::span<const float> weights, bool squares, std::span<float> out,
+                 Workspace& workspace) const;
+
   Parts parts_;
   std::size_t n_planes_ = 0, n_columns_ = 0, n_modes_ = 0;
 };
 
 /// From matrices in cell order. @param mean (n_cells) @param modes (n_modes, n_cells)
 /// @param residual (n_cells), may be empty @param n_columns divides n_cells
+/// @param fold may be empty @param class_of_mode (n_modes) when it is not
 [[nodiscard]] std::unique_ptr<PodModel> make_pod_model(std::string kind, const Eigen::VectorXd& mean,
                                                        const MatrixF& modes, const Eigen::VectorXd& residual,
                                                        std::size_t n_columns,
-                                                       std::shared_ptr<const CoefficientModel> coefficients);
+                                                       std::shared_ptr<const CoefficientModel> coefficients,
+                                                       SymmetryFold fold = {},
+                                                       std::vector<std::int32_t> class_of_mode = {});
 
 }  // namespace elrom::model
