@@ -7,24 +7,9 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/base/version.hpp"
-#include "packed_mesh.hpp"
 
 namespace elrom::model {
 namespace {
-
-constexpr std::string_view bundle_kind = "elrom-bundle";
-constexpr FormatVersion bundle_format{1, 0};
-
-std::string field_prefix(const std::string& field) { return "fields/" + field; }
-std::string uncertainty_prefix(const std::string& field) { return "uncertainty/" + field; }
-
-void save_mesh(io::TensorFile& file, const field::Mesh& mesh) {
-  file.set("mesh/centre", io::Tensor::copy(mesh.centre));
-  file.set("mesh/volume", io::Tensor::copy(std::span(mesh.volume), {mesh.volume.size()}));
-  file.set("mesh/points", io::Tensor::copy(mesh.points));
-  file.set("mesh/corners", io::Tensor::copy(std::span(mesh.corners), {mesh.corners.size() / 8, 8}));
-}
 
 int major_of(const std::string& format) {
   int major = -1;
@@ -53,16 +38,6 @@ void check_kind(const io::TensorFile& file) {
   }
 }
 
-/// Names and shapes of a bundle under construction agree with each other.
-void check_consistent(const Bundle& bundle) {
-  for (const auto& info : bundle.info.fields) {
-    const auto model = bundle.models.find(info.name);
-    check(model != bundle.models.end() && model->second != nullptr, "bundle: a model for every field");
-    check(model->second->n_columns() == bundle.mesh.n_columns, "bundle: models on the bundle's mesh");
-  }
-  check(bundle.models.size() == bundle.info.fields.size(), "bundle: a field for every model");
-}
-
 /// Names of the tensors under "<prefix>/".
 std::vector<std::string> tensors_under(const io::TensorFile& file, const std::string& prefix) {
   std::vector<std::string> names;
@@ -87,23 +62,6 @@ void verify_prefix(const io::TensorFile& file, const std::string& prefix) {
 }
 
 }  // namespace
-
-void Bundle::write(const std::filesystem::path& path) const {
-  check_consistent(*this);
-  io::TensorFile file;
-  file.set_text("kind", std::string(bundle_kind));
-  file.set_text("format", bundle_format.text());
-  file.set_text("program", program_version());
-  file.set_text("bundle", to_json({info, mesh.n_planes, mesh.n_columns, mesh.digest()}));
-  save_mesh(file, mesh);
-  save_packed_mesh(file, mesh);
-  guard.save(file, "guard");
-  for (const auto& [name, model] : models) model->save(file, field_prefix(name));
-  for (const auto& [name, interval] : uncertainty) {
-    if (interval) interval->save(file, uncertainty_prefix(name));
-  }
-  file.write(path);
-}
 
 BundleReader::BundleReader(const std::filesystem::path& path) : file_(io::TensorFile::open(path)) {
   check_kind(file_);
