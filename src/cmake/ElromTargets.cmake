@@ -11,7 +11,7 @@ function(elrom_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
                          # GCC 12 false alarms: in std::string (its bug 105329) ...
-                         -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds
+                         -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds
                          # ... and in its AVX-512 intrinsics, through Eigen (its bug 105593)
                          -Wno-maybe-uninitialized -Wno-uninitialized)
   if(ELROM_NATIVE)
