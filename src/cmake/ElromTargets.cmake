@@ -64,28 +64,32 @@ function(elrom_program name)
   install(TARGETS ${target} RUNTIME DESTINATION bin)
 endfunction()
 
-# All tests share one precompiled header (and so one set of compile options); those of LibTorch have other options.
+# The optimiser is the larger half of a test's compile time, and no test is about speed.
+set(ELROM_TEST_OPTIMISATION $<$<CONFIG:Release>:-O1>)
 function(elrom_test_options target)
   elrom_compile_options(${target})
-  # The optimiser is the larger half of a test's compile time, and no test is about speed.
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${target} PRIVATE ELROM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ELROM_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
 endfunction()
 
-# elrom_test(path/to/file_test.cpp LINKS ...) -> one executable with one CTest entry a test case.
+# elrom_test(path/to/file_test.cpp [LIBTORCH] LINKS ...) -> one executable with one CTest entry a test case.
 # Slow or statistical work belongs into tests/benchmark, which CTest does not run.
 function(elrom_test source)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "LIBTORCH" "TIMEOUT" "LINKS" ${ARGN})
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/tests OUTPUT_VARIABLE folder)
   string(REGEX REPLACE "_test\\.cpp$" "" stem ${source})
   string(REPLACE "/" "-" name "test-${folder}-${stem}")
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} GTest::gmock GTest::gtest_main)
   elrom_test_options(${name})
-  if(NOT elrom::torch IN_LIST ARG_LINKS)
+  # Nearly all tests share one precompiled header, and so one set of compile options. LIBTORCH: the test includes it, and is
+  # compiled as elrom::torch is, whose header it takes.
+  if(ARG_LIBTORCH)
+    target_precompile_headers(${name} REUSE_FROM elrom-torch)
+    target_compile_options(${name} PRIVATE -fPIC -fpch-preprocess)
+  else()
     target_precompile_headers(${name} REUSE_FROM test-headers)
-    target_compile_options(${name} PRIVATE -fpch-preprocess)
+    target_compile_options(${name} PRIVATE ${ELROM_TEST_OPTIMISATION} -fpch-preprocess)
   endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)

@@ -36,7 +36,7 @@ Ridge fit_ridge(const MatrixD& x, const MatrixXd& y, std::span<const double> pen
   check(!penalties.empty() && x.rows() == y.rows() && x.rows() > 0, "ridge: cases, targets and a penalty");
   const Eigen::RowVectorXd x_mean = x.colwise().mean(), y_mean = y.colwise().mean();
   const MatrixXd x_centred = x.rowwise() - x_mean, y_centred = y.rowwise() - y_mean;
-  const Eigen::BDCSVD<MatrixXd> svd(x_centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<MatrixXd> svd(x_centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Decomposition d{svd.matrixU(), svd.matrixV(), svd.singularValues()};
   const MatrixXd uty = d.u.transpose() * y_centred;
 
