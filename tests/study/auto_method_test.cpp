@@ -89,6 +89,22 @@ TEST(Auto, BlendsErrorsThatCancel) {
   EXPECT_EQ(fit.model->kind(), "blend");
 }
 
+TEST(Auto, DoesNotBlendForTheSakeOfOneCase) {
+  // "two" cancels the error of "one" in case 0, where both are far off, and is worse in all the others:
+  // weights fitted to all cases would gain a third, weights learned without case 0 do not see it.
+  Contest contest;
+  MatrixF one = noise(contest.data, "a", 0.1), two = noise(contest.data, "b", 0.5);
+  two.row(0) = -10 * one.row(0);
+  one.row(0) *= 10;
+  const Fake first("one", one), second("two", two);
+
+  const AutoFit fit = contest.run({&first, &second});
+
+  EXPECT_EQ(fit.candidates[0].weight, 1);
+  EXPECT_EQ(fit.candidates[1].weight, 0);
+  EXPECT_NEAR(fit.nrmse, fit.candidates[0].nrmse, 1e-9);
+}
+
 TEST(Auto, ACandidateThatDivergesOnlyLoses) {
   Contest contest;
   const Fake broken("broken", {}), good("good", noise(contest.data, "a", 0.1));

@@ -20,14 +20,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double sum_of_products(const MatrixF& a, const MatrixF& b) {
+double product_of_rows(const MatrixF& a, const MatrixF& b, Index i) {
   double sum = 0;
-  for (Index i = 0; i < a.rows(); ++i) {
-    double row = 0;
-    for (Index c = 0; c < a.cols(); ++c) row += static_cast<double>(a(i, c)) * b(i, c);
-    sum += row;
-  }
+  for (Index c = 0; c < a.cols(); ++c) sum += static_cast<double>(a(i, c)) * b(i, c);
   return sum;
+}
+
+double sum_of_squares(const MatrixF& a) {
+  double sum = 0;
+  for (Index i = 0; i < a.rows(); ++i) sum += product_of_rows(a, a, i);
+  return sum;
+}
+
+/// Which fold each case is in, in the order of `cases`.
+std::vector<std::size_t> folds_of(std::span<const std::size_t> cases, const Folds& folds) {
+  std::vector<std::size_t> found(cases.size());
+  for (std::size_t k = 0; k < folds.size(); ++k) {
+    for (const std::size_t row : folds[k])
+      found[static_cast<std::size_t>(std::ranges::find(cases, row) - cases.begin())] = k;
+  }
+  return found;
 }
 
 /// Sum of squared deviations from the rows' own mean.
@@ -51,17 +63,23 @@ VectorXd unconstrained(const MatrixXd& gram, const std::vector<Index>& members) 
 /// Cross-validated errors of every candidate that ends in finite numbers.
 class Contest {
  public:
-  Contest(const FieldData& data, std::span<const std::size_t> cases, std::span<const Method* const> methods)
-      : data_(data), cases_(cases), methods_(methods), variation_(variation(data, cases)) {}
+  Contest(const FieldData& data, std::span<const std::size_t> cases, std::span<const Method* const> methods,
+          const Folds& folds)
+      : data_(data),
+        cases_(cases),
+        methods_(methods),
+        folds_(folds),
+        fold_of_(folds_of(cases, folds)),
+        variation_(variation(data, cases)) {}
 
-  void run(const Folds& folds, const FitContext& context) {
+  void run(const FitContext& context) {
     std::exception_ptr first;
     for (const Method* method : methods_) {
       CandidateScore score{.name = method->name(), .nrmse = std::numeric_limits<double>::quiet_NaN()};
       try {
-        MatrixF errors = errors_of(method->cross_predict(data_, folds, context));
+        MatrixF errors = errors_of(method->cross_predict(data_, folds_, context));
         if (!errors.allFinite()) throw NumericalError(score.name + ": predictions are not finite");
-        score.nrmse = relative(sum_of_products(errors, errors));
+        score.nrmse = relative(sum_of_squares(errors));
         standing_.push_back(scores_.size());
         errors_.push_back(std::move(errors));
       } catch (const NumericalError& error) {
@@ -76,27 +94,35 @@ class Contest {
 
   /// Sets the weights of the final model. @return its cross-validated error
   double decide(double least_gain) {
-    const auto n = static_cast<Index>(errors_.size());
-    MatrixXd gram(n, n);
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j <= i; ++j)
-        gram(i, j) = gram(j, i) = sum_of_products(errors_[size(i)], errors_[size(j)]);
-    }
+    const std::vector<MatrixXd> grams = grams_of_folds();
+    MatrixXd all = grams.front();
+    for (std::size_t k = 1; k < grams.size(); ++k) all += grams[k];
     Index best = 0;
-    gram.diagonal().minCoeff(&best);
-    const std::vector<double> weights = blend_weights(gram);
-    const VectorXd w = VectorXd::Map(weights.data(), n);
-    const double blended = std::sqrt(std::max(0.0, w.dot(gram * w))), single = std::sqrt(gram(best, best));
-    const bool blend = blended < (1 - least_gain) * single;
-    for (Index i = 0; i < n; ++i) scores_[standing_[size(i)]].weight = blend ? w[i] : (i == best ? 1 : 0);
-    return relative(std::pow(blend ? blended : single, 2));
+    const double single = all.diagonal().minCoeff(&best);
+    VectorXd weights = weights_of(all);
+    // Weights fitted to the errors that they are judged by flatter a blend; those of the other folds do not.
+    double blended = 0;
+    for (const MatrixXd& gram : grams) {
+      fold_weights_.push_back(weights_of(all - gram));
+      blended += fold_weights_.back().dot(gram * fold_weights_.back());
+    }
+    const bool blend = std::sqrt(std::max(0.0, blended)) < (1 - least_gain) * std::sqrt(single);
+    if (!blend) {
+      weights = VectorXd::Unit(weights.size(), best);
+      std::ranges::fill(fold_weights_, weights);
+    }
+    for (Index i = 0; i < weights.size(); ++i) scores_[standing_[size(i)]].weight = weights[i];
+    return relative(blend ? blended : single);
   }
 
   [[nodiscard]] MatrixF residuals() const {
     MatrixF sum = MatrixF::Zero(errors_.front().rows(), errors_.front().cols());
-    for (std::size_t i = 0; i < errors_.size(); ++i) {
-      if (const double weight = scores_[standing_[i]].weight; weight > 0)
-        sum += static_cast<float>(weight) * errors_[i];
+    for (Index i = 0; i < sum.rows(); ++i) {
+      const VectorXd& weights = fold_weights_[fold_of_[size(i)]];
+      for (std::size_t m = 0; m < errors_.size(); ++m) {
+        if (const double weight = weights[static_cast<Index>(m)]; weight > 0)
+          sum.row(i) += static_cast<float>(weight) * errors_[m].row(i);
+      }
     }
     return sum;
   }
@@ -105,6 +131,26 @@ class Contest {
 
  private:
   [[nodiscard]] static std::size_t size(Index i) { return static_cast<std::size_t>(i); }
+
+  [[nodiscard]] static VectorXd weights_of(const MatrixXd& gram) {
+    const std::vector<double> weights = blend_weights(gram);
+    return VectorXd::Map(weights.data(), gram.rows());
+  }
+
+  /// Products of the candidates' errors, summed over the cases of each fold, (n, n).
+  [[nodiscard]] std::vector<MatrixXd> grams_of_folds() const {
+    const auto n = static_cast<Index>(errors_.size());
+    std::vector<MatrixXd> grams(folds_.size(), MatrixXd::Zero(n, n));
+    for (std::size_t i_case = 0; i_case < cases_.size(); ++i_case) {
+      MatrixXd& gram = grams[fold_of_[i_case]];
+      for (Index i = 0; i < n; ++i) {
+        for (Index j = 0; j <= i; ++j)
+          gram(i, j) += product_of_rows(errors_[size(i)], errors_[size(j)], static_cast<Index>(i_case));
+      }
+    }
+    for (MatrixXd& gram : grams) gram = MatrixXd(gram.selfadjointView<Eigen::Lower>());
+    return grams;
+  }
 
   [[nodiscard]] MatrixF errors_of(const MatrixF& predictions) const {
     MatrixF errors(static_cast<Index>(cases_.size()), data_.values.cols());
@@ -115,16 +161,19 @@ class Contest {
     return errors;
   }
   [[nodiscard]] double relative(double squares) const {
-    return variation_ > 0 ? std::sqrt(squares / variation_) : 0;
+    return variation_ > 0 ? std::sqrt(std::max(0.0, squares) / variation_) : 0;
   }
 
   const FieldData& data_;
   std::span<const std::size_t> cases_;
   std::span<const Method* const> methods_;
+  const Folds& folds_;
+  std::vector<std::size_t> fold_of_;  // of each case
   double variation_;
   std::vector<CandidateScore> scores_;
-  std::vector<std::size_t> standing_;  // place in scores_ of each entry of errors_
-  std::vector<MatrixF> errors_;        // (n_cases, n_cells)
+  std::vector<std::size_t> standing_;   // place in scores_ of each entry of errors_
+  std::vector<MatrixF> errors_;         // (n_cases, n_cells)
+  std::vector<VectorXd> fold_weights_;  // of each fold, learned from the others
 };
 
 std::unique_ptr<model::FieldModel> blend(const std::vector<double>& weights,
@@ -156,15 +205,16 @@ std::vector<double> blend_weights(const MatrixXd& error_gram) {
 double cross_validated_nrmse(const FieldData& data, std::span<const std::size_t> cases,
                              const MatrixF& residuals) {
   const double total = variation(data, cases);
-  return total > 0 ? std::sqrt(sum_of_products(residuals, residuals) / total) : 0;
+  return total > 0 ? std::sqrt(sum_of_squares(residuals) / total) : 0;
 }
 
 AutoFit fit_auto(const FieldData& data, std::span<const std::size_t> cases,
                  std::span<const Method* const> candidates, const AutoOptions& options,
                  const FitContext& context) {
   check(!candidates.empty(), "auto: at least one candidate");
-  Contest contest(data, cases, candidates);
-  contest.run(load_grouped_folds(data.cases->loads, cases, options.n_folds), context);
+  const Folds folds = load_grouped_folds(data.cases->loads, cases, options.n_folds);
+  Contest contest(data, cases, candidates, folds);
+  contest.run(context);
   AutoFit fit;
   fit.nrmse = contest.decide(options.least_gain);
   fit.candidates = contest.scores();

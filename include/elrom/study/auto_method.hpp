@@ -13,9 +13,10 @@ namespace elrom::study {
 
 struct AutoOptions {
   std::size_t n_folds = 8;
-  /// A blend must be better than its best member by this share of the member's error, or the member alone is
-  /// taken: weights learned from few cases are noisy, and a single model predicts faster.
-  double least_gain = 0.02;
+  /// A blend whose weights are learned without a fold must be better in it than the best member by this share
+  /// of the member's error, or that member alone is taken: each further member costs time at every
+  /// prediction.
+  double least_gain = 0.01;
 };
 
 struct CandidateScore {
@@ -28,9 +29,8 @@ struct CandidateScore {
 struct AutoFit {
   std::unique_ptr<model::FieldModel> model;  ///< fitted on all the cases
   std::vector<CandidateScore> candidates;    ///< in the order given
-  double nrmse = 0;                          ///< cross-validated, of the final model
-  MatrixF
-      residuals;  //!< cross-validated truth minus prediction of the final model, SI, (cases.size(), n_cells)
+  double nrmse = 0;   ///< cross-validated, of the final model: a blend's weights are those of the other folds
+  MatrixF residuals;  //!< truth minus prediction behind `nrmse`, SI, (cases.size(), n_cells)
 };
 
 /// A candidate that throws NumericalError loses and is told to the log; when all do, the first error is
