@@ -109,11 +109,13 @@ void add_physics_options(CLI::App& app, Arguments& arguments) {
                "change each case as little as possible until solids and gas are conserved; needs all cells");
 }
 
-void add_run_options(CLI::App& app, Arguments& arguments, bool& no_verify) {
+void add_run_options(CLI::App& app, Arguments& arguments, bool& no_verify, bool& no_sync) {
   app.add_option("--threads", arguments.n_threads, "number of threads, 0: all processors")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app.add_flag("--no-verify", no_verify, "do not compare the bundle's digests (saves a few milliseconds)");
+  app.add_flag("--no-sync", no_sync,
+               "do not wait until the files are on the disk (saves some milliseconds a file; they may be lost with the power)");
   app.add_flag("--timing", arguments.timing, "print where the time went");
 }
 
@@ -131,9 +133,7 @@ void check_together(Arguments& arguments) {
   if (arguments.to_standard_output() && binary) {
     throw UsageError("--output - takes one text format: --format csv, txt or ip");
   }
-  const bool fluent =
-      std::find(arguments.formats.begin(), arguments.formats.end(), Format::ip) != arguments.formats.end();
-  if (fluent && arguments.profile)
+  if (arguments.writes(Format::ip) && arguments.profile)
     throw UsageError("a Fluent interpolation file holds cells; --profile has none");
 }
 
@@ -142,7 +142,7 @@ void check_together(Arguments& arguments) {
 ParsedArguments parse_arguments(int argc, const char* const* argv) {
   Arguments arguments;
   std::string builds = "mean";
-  bool no_verify = false;
+  bool no_verify = false, no_sync = false;
   CLI::App app(description, "elrom-predict");
   app.set_version_flag("--version", program_version());
   app.footer(footer);
@@ -151,7 +151,7 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   add_selection_options(app, arguments, builds);
   add_output_options(app, arguments);
   add_physics_options(app, arguments);
-  add_run_options(app, arguments, no_verify);
+  add_run_options(app, arguments, no_verify, no_sync);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
@@ -161,6 +161,7 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   }
   arguments.best_build_only = builds == "best";
   arguments.verify = !no_verify;
+  arguments.sync = !no_sync;
   check_together(arguments);
   return {.arguments = std::move(arguments), .exit_status = {}};
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The command line of elrom-predict.
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -29,9 +30,13 @@ struct Arguments {
   bool conserve = false;  ///< smallest change to the input inventory and the inlets' gas flow
   bool timing = false;
   bool verify = true;
+  bool sync = true;   ///< wait until a file is on the disk before it gets its name
   int n_threads = 0;  ///< 0: all
 
   [[nodiscard]] bool to_standard_output() const { return output == "-"; }
+  [[nodiscard]] bool writes(Format format) const {
+    return std::find(formats.begin(), formats.end(), format) != formats.end();
+  }
 };
 
 struct ParsedArguments {

@@ -11,26 +11,19 @@ namespace {
 constexpr std::uint8_t vtk_hexahedron = 12;
 constexpr std::size_t n_corners = 8;
 
-bool contains(const Box& box, const field::Mesh& mesh, std::size_t cell) {
+bool contains(const Box& box, const field::Mesh& mesh, std::size_t row) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double x = mesh.centre(static_cast<Eigen::Index>(cell), static_cast<Eigen::Index>(axis));
+    const double x = mesh.centre(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(axis));
     if (x < box.low[axis] || x > box.high[axis]) return false;
   }
   return true;
 }
 
-std::vector<float> single_precision(const MatrixD& values) {
-  std::vector<float> result(static_cast<std::size_t>(values.size()));
-  std::transform(values.data(), values.data() + values.size(), result.begin(),
-                 [](double x) { return static_cast<float>(x); });
-  return result;
-}
-
 /// Points that the chosen cells touch, numbered anew in their old order.
 void keep_used_points(const field::Mesh& mesh, const Cells& cells, CellGeometry& geometry) {
   std::vector<std::int32_t> number(static_cast<std::size_t>(mesh.points.rows()), -1);
-  for (const auto cell : cells.cells) {
-    const auto* corners = mesh.corners.data() + static_cast<std::size_t>(cell) * n_corners;
+  for (const auto row : cells.rows) {
+    const auto* corners = mesh.corners.data() + static_cast<std::size_t>(row) * n_corners;
     for (std::size_t k = 0; k < n_corners; ++k) number[static_cast<std::size_t>(corners[k])] = 0;
   }
   std::int32_t n_used = 0;
@@ -41,8 +34,8 @@ void keep_used_points(const field::Mesh& mesh, const Cells& cells, CellGeometry&
       geometry.points.push_back(static_cast<float>(mesh.points(static_cast<Eigen::Index>(i), axis)));
     }
   }
-  for (const auto cell : cells.cells) {
-    const auto* corners = mesh.corners.data() + static_cast<std::size_t>(cell) * n_corners;
+  for (const auto row : cells.rows) {
+    const auto* corners = mesh.corners.data() + static_cast<std::size_t>(row) * n_corners;
     for (std::size_t k = 0; k < n_corners; ++k)
       geometry.connectivity.push_back(number[static_cast<std::size_t>(corners[k])]);
   }
@@ -54,9 +47,7 @@ Cells all_cells(std::size_t n_planes, std::size_t n_columns) {
   Cells cells;
   cells.n_columns = n_columns;
   cells.planes.resize(n_planes);
-  cells.cells.resize(n_planes * n_columns);
   std::iota(cells.planes.begin(), cells.planes.end(), 0);
-  std::iota(cells.cells.begin(), cells.cells.end(), 0);
   return cells;
 }
 
@@ -67,11 +58,14 @@ Cells choose_cells(const field::Mesh& mesh, std::vector<std::int32_t> planes, co
     planes.resize(mesh.n_planes);
     std::iota(planes.begin(), planes.end(), 0);
   }
-  for (const auto plane : planes) {
-    const std::size_t before = cells.cells.size(), first = static_cast<std::size_t>(plane) * mesh.n_columns;
+  check(planes.size() == mesh.n_planes, "cells: a mesh of the planes asked for");
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const auto plane = planes[i];
+    const std::size_t before = cells.cells.size(), first = i * mesh.n_columns;
     for (std::size_t column = 0; column < mesh.n_columns; ++column) {
       if (box && !contains(*box, mesh, first + column)) continue;
-      cells.cells.push_back(static_cast<std::int32_t>(first + column));
+      cells.rows.push_back(static_cast<std::int32_t>(first + column));
+      cells.cells.push_back(static_cast<std::int32_t>(static_cast<std::size_t>(plane) * mesh.n_columns + column));
       cells.sources.push_back(static_cast<std::int32_t>(cells.planes.size() * mesh.n_columns + column));
     }
     if (cells.cells.size() > before) cells.planes.push_back(plane);
@@ -84,17 +78,11 @@ Cells choose_cells(const field::Mesh& mesh, std::vector<std::int32_t> planes, co
 
 CellGeometry geometry_of(const field::Mesh& mesh, const Cells& cells) {
   CellGeometry geometry;
-  if (cells.size() == mesh.n_cells()) {
-    geometry.centre = single_precision(mesh.centre);
-    geometry.points = single_precision(mesh.points);
-    geometry.connectivity = mesh.corners;
-  } else {
-    for (const auto cell : cells.cells) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis)
-        geometry.centre.push_back(static_cast<float>(mesh.centre(cell, axis)));
-    }
-    keep_used_points(mesh, cells, geometry);
+  for (const auto row : cells.rows) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      geometry.centre.push_back(static_cast<float>(mesh.centre(row, axis)));
   }
+  keep_used_points(mesh, cells, geometry);
   geometry.offsets.resize(cells.size() + 1);
   for (std::size_t i = 0; i <= cells.size(); ++i)
     geometry.offsets[i] = static_cast<std::int32_t>(i * n_corners);
@@ -106,15 +94,17 @@ PlaneAverage::PlaneAverage(const field::Mesh& mesh, const Cells& cells)
     : weight_(cells.size()), heights_(cells.planes.size()) {
   std::vector<double> volume(cells.planes.size(), 0.0), moment(cells.planes.size(), 0.0);
   std::size_t plane = 0;
-  for (const auto cell : cells.cells) {
-    while (static_cast<std::size_t>(cells.planes[plane]) != static_cast<std::size_t>(cell) / cells.n_columns)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto row = cells.rows[i];
+    while (static_cast<std::size_t>(cells.planes[plane]) !=
+           static_cast<std::size_t>(cells.cells[i]) / cells.n_columns)
       ++plane;
     plane_of_.push_back(static_cast<std::int32_t>(plane));
-    volume[plane] += mesh.volume[static_cast<std::size_t>(cell)];
-    moment[plane] += mesh.volume[static_cast<std::size_t>(cell)] * mesh.centre(cell, 2);
+    volume[plane] += mesh.volume[static_cast<std::size_t>(row)];
+    moment[plane] += mesh.volume[static_cast<std::size_t>(row)] * mesh.centre(row, 2);
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    weight_[i] = mesh.volume[static_cast<std::size_t>(cells.cells[i])] /
+    weight_[i] = mesh.volume[static_cast<std::size_t>(cells.rows[i])] /
                  volume[static_cast<std::size_t>(plane_of_[i])];
   }
   for (std::size_t i = 0; i < heights_.size(); ++i) heights_[i] = static_cast<float>(moment[i] / volume[i]);

@@ -16,19 +16,20 @@ struct Cells {
   std::vector<std::int32_t> planes;   //!< planes with at least one chosen cell, ascending
   std::size_t n_columns = 0;          //!< of the mesh
   bool whole_planes = true;           //!< every column of every plane
-  std::vector<std::int32_t> cells;    //!< chosen cells (plane * n_columns + column), (size())
+  std::vector<std::int32_t> cells;    //!< chosen cells (plane * n_columns + column), (size()); empty: all_cells()
   std::vector<std::int32_t> sources;  //!< place of each in a prediction of `planes`; empty with whole planes
+  std::vector<std::int32_t> rows;     //!< place of each in the mesh they were chosen from
 
-  [[nodiscard]] std::size_t size() const { return cells.size(); }
+  [[nodiscard]] std::size_t size() const { return cells.empty() ? planes.size() * n_columns : cells.size(); }
 };
 
-/// Every cell, for which the mesh itself is not needed.
+/// Every cell, for which neither the mesh nor a list is needed.
 [[nodiscard]] Cells all_cells(std::size_t n_planes, std::size_t n_columns);
-/// @param planes empty: all. @throws UsageError when no cell is left
+/// @param mesh of `planes` only @param planes their numbers in the whole mesh; empty: all. @throws UsageError when no cell is left
 [[nodiscard]] Cells choose_cells(const field::Mesh& mesh, std::vector<std::int32_t> planes,
                                  const std::optional<Box>& box);
 
-/// Geometry of the chosen cells in single precision, points renumbered without gaps.
+/// Geometry of the chosen cells, from the mesh they were chosen from, in single precision, points renumbered without gaps.
 struct CellGeometry {
   std::vector<float> centre;               //!< [m], (size(), 3)
   std::vector<float> points;               //!< [m], (n_points, 3)

@@ -18,14 +18,15 @@ io::Shape shape_of(const Run& run) {
   return {run.cells.planes.size(), run.cells.n_columns};
 }
 
-void write_identity(const Run& run, const Prediction& prediction, const io::Hdf5Object& object) {
-  object.set_text("case", prediction.inputs->name);
+void write_identity(const Run& run, const field::CaseInputs& inputs, const model::Assessment& assessment,
+                    const io::Hdf5Object& object) {
+  object.set_text("case", inputs.name);
   object.set_text("bundle_digest", run.bundle_digest);
-  object.set_text("validity", model::name_of(prediction.assessment->verdict));
+  object.set_text("validity", model::name_of(assessment.verdict));
 }
 
-void write_provenance(const Run& run, const Prediction& prediction, const io::Hdf5Group& elrom) {
-  const auto& assessment = *prediction.assessment;
+void write_provenance(const Run& run, const field::CaseInputs& inputs, const model::Assessment& assessment,
+                      const io::Hdf5Group& elrom) {
   elrom.set_text("validity_reason", assessment.reason);
   elrom.set_number("validity_distance", assessment.distance);
   elrom.set_number("validity_p_value", assessment.p_value);
@@ -37,22 +38,23 @@ void write_provenance(const Run& run, const Prediction& prediction, const io::Hd
   elrom.set_text("method", run.method);
   elrom.set_text("builds", run.best_build_only ? "best" : "mean");
   if (run.level) elrom.set_number("interval_level", *run.level);
-  if (std::isfinite(prediction.inputs->load)) elrom.set_number("load", prediction.inputs->load);
+  if (std::isfinite(inputs.load)) elrom.set_number("load", inputs.load);
 
-  const auto inputs = elrom.write<double>("boundary_conditions", prediction.inputs->values);
+  const auto conditions = elrom.write<double>("boundary_conditions", inputs.values);
   std::vector<std::string> units;
   for (const auto& info : run.schema.inputs()) units.push_back(info.unit);
-  inputs.set_texts("names", run.schema.names());
-  inputs.set_texts("units", units);
+  conditions.set_texts("names", run.schema.names());
+  conditions.set_texts("units", units);
 }
 
-void write_fields(const Run& run, const Prediction& prediction, const io::Hdf5Group& group,
-                  std::span<const float> values) {
-  for (std::size_t i = 0; i < run.fields.size(); ++i) {
-    const auto& info = run.fields[i];
-    group.write<float>(info.name, prediction.field(values, run, i), shape_of(run))
-        .set_text("unit", info.unit);
+/// One dataset a field, still without values.
+std::vector<io::Hdf5Dataset> create_fields(const Run& run, const io::Hdf5Group& group) {
+  std::vector<io::Hdf5Dataset> datasets;
+  for (const auto& info : run.fields) {
+    datasets.push_back(group.create<float>(info.name, shape_of(run)));
+    datasets.back().set_text("unit", info.unit);
   }
+  return datasets;
 }
 
 void write_mesh(const Run& run, const io::Hdf5Group& elrom) {
@@ -122,21 +124,35 @@ void write_vtk(const Run& run, const io::Hdf5Group& file, const io::Hdf5Group& e
 
 }  // namespace
 
-void write_hdf(const Run& run, const Prediction& prediction, const std::filesystem::path& path) {
-  auto file = io::Hdf5File::create(path);
-  io::write_kind(file, "elrom-prediction", prediction_format);
-  write_identity(run, prediction, file);
-  const auto elrom = file.create_group("elrom");
-  write_identity(run, prediction, elrom);
-  write_provenance(run, prediction, elrom);
-  const std::string averages = run.average ? "profiles" : "fields";
-  write_fields(run, prediction, elrom.create_group(averages), prediction.values);
-  if (run.level) write_fields(run, prediction, elrom.create_group("half_width"), prediction.half_width);
+HdfWriter::HdfWriter(const Run& run, const field::CaseInputs& inputs, const model::Assessment& assessment,
+                     const std::filesystem::path& path)
+    : run_(run), file_(io::Hdf5File::create(path)) {
+  io::write_kind(file_, "elrom-prediction", prediction_format);
+  write_identity(run, inputs, assessment, file_);
+  const auto elrom = file_.create_group("elrom");
+  write_identity(run, inputs, assessment, elrom);
+  write_provenance(run, inputs, assessment, elrom);
+  values_ = create_fields(run, elrom.create_group(run.average ? "profiles" : "fields"));
+  if (run.level) half_width_ = create_fields(run, elrom.create_group("half_width"));
   write_mesh(run, elrom);
+  if (!run.average) write_vtk(run, file_, elrom);
+}
+
+void HdfWriter::finish(const Prediction& prediction) {
+  for (std::size_t i = 0; i < values_.size(); ++i)
+    values_[i].write(prediction.field(prediction.values, run_, i));
+  for (std::size_t i = 0; i < half_width_.size(); ++i)
+    half_width_[i].write(prediction.field(prediction.half_width, run_, i));
+  const auto elrom = file_.group("elrom");
   if (prediction.audit != nullptr) write_audit(*prediction.audit, elrom);
   if (prediction.change != nullptr) write_change(*prediction.change, elrom);
-  if (!run.average) write_vtk(run, file, elrom);
-  file.close();
+  values_.clear();
+  half_width_.clear();
+  file_.close();
+}
+
+void write_hdf(const Run& run, const Prediction& prediction, const std::filesystem::path& path) {
+  HdfWriter(run, *prediction.inputs, *prediction.assessment, path).finish(prediction);
 }
 
 }  // namespace elrom::predict

@@ -4,12 +4,28 @@
 
 #include <filesystem>
 
+#include "elrom/io/hdf5.hpp"
 #include "prediction.hpp"
 
 namespace elrom::predict {
 
-/// Writes `path` (a temporary of the caller's). Thread rule: one thread at a time, as the HDF5 library wants
-/// it.
+/// A file in two steps, so that the first can run while the values are computed. Thread rule: one thread at a time for all files,
+/// as the HDF5 library wants it.
+class HdfWriter {
+ public:
+  /// Writes all of `path` (a temporary of the caller's) but values and physics. @throws SystemError
+  HdfWriter(const Run& run, const field::CaseInputs& inputs, const model::Assessment& assessment,
+            const std::filesystem::path& path);
+  /// The values, the physics when asked for; closes the file. @throws SystemError
+  void finish(const Prediction& prediction);
+
+ private:
+  const Run& run_;
+  io::Hdf5File file_;
+  std::vector<io::Hdf5Dataset> values_, half_width_;  ///< of each field
+};
+
+/// Both steps.
 void write_hdf(const Run& run, const Prediction& prediction, const std::filesystem::path& path);
 
 }  // namespace elrom::predict

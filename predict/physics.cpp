@@ -78,7 +78,7 @@ Physics::Physics(const Arguments& arguments, const model::BundleReader& bundle, 
   check_cells(arguments, bundle, cells);
   check_fields(arguments, bundle);
   check_inputs(arguments, bundle);
-  mesh_ = bundle.mesh(arguments.verify);
+  mesh_ = bundle.mesh();
   schema_ = bundle.info().schema;
   fields_ = chosen_fields(arguments, bundle);
 }

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <future>
+#include <memory>
 #include <mutex>
 
 #include "case_list.hpp"
 #include "elrom/base/app.hpp"
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/large_array.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/model/predictor.hpp"
 #include "hdf_writer.hpp"
@@ -69,17 +72,23 @@ std::optional<PackedGeometry> packed_geometry(const model::BundleReader& bundle)
                         .connectivity = part("connectivity"),
                         .offsets = part("offsets"),
                         .types = part("types"),
-                        .n_points = file.tensor("mesh/points").shape().at(0)};
+                        .n_points = file.tensors().at("mesh/points").shape().at(0)};
 }
 
 /// What one thread needs for one case at a time; reused, so that a long table runs in flat memory.
 struct Desk {
   model::Predictor::Scratch scratch;
-  std::vector<float> values, half_width;         //!< as predicted
+  base::LargeArray<float> values, half_width;    //!< as predicted
   std::vector<float> chosen, chosen_half_width;  //!< after region and averages
   PhysicsResult physics;
   std::string text;
   double compute = 0, write = 0;
+};
+
+/// A prediction's file on its way.
+struct HdfFile {
+  std::unique_ptr<base::AtomicFile> file;
+  HdfWriter writer;
 };
 
 /// The parts of a run that live as long as it.
@@ -94,7 +103,10 @@ class Session {
   void predict_case(std::size_t i, Desk& desk, int n_threads);
   [[nodiscard]] std::span<const float> choose(std::span<const float> predicted, std::vector<float>& chosen,
                                               bool average) const;
-  void write(Format format, const Prediction& prediction, Desk& desk);
+  [[nodiscard]] std::unique_ptr<base::AtomicFile> file_for(Format format,
+                                                           const field::CaseInputs& inputs) const;
+  void write_hdf_file(std::future<HdfFile>& begun, const Prediction& prediction);
+  void write_text(Format format, const Prediction& prediction, Desk& desk);
   [[nodiscard]] std::filesystem::path target(Format format, const field::CaseInputs& inputs) const;
 
   const Arguments& arguments_;
@@ -116,7 +128,8 @@ Session::Session(const Arguments& arguments)
       n_threads_(arguments.n_threads > 0 ? arguments.n_threads : base::available_threads()) {
   if (arguments_.timing) cached_ = cached_share(arguments_.bundle);
   lap_.lap();
-  model::BundleReader bundle(arguments_.bundle);
+  model::BundleReader bundle(arguments_.bundle,
+                             arguments_.verify ? io::Verify::on_use : io::Verify::never);
   cases_ = case_list(arguments_, bundle.info().schema);
   load_geometry(bundle);
   if (arguments_.audit || arguments_.conserve) physics_.emplace(arguments_, bundle, run_.cells);
@@ -125,12 +138,10 @@ Session::Session(const Arguments& arguments)
                              .planes = run_.cells.planes,
                              .best_build_only = arguments_.best_build_only,
                              .interval_level = arguments_.level,
-                             .verify = arguments_.verify,
+                             .load_on_use = cases_.size() == 1 && !arguments_.timing,
                              .n_threads = n_threads_};
   predictor_.emplace(std::move(bundle), std::move(selection));
-  timing_.verify = predictor_->load_times().verify;
-  timing_.build = predictor_->load_times().build;
-  lap_.lap();
+  timing_.read = lap_.lap();
   prepare();
   timing_.prepare = lap_.lap();
 }
@@ -145,7 +156,7 @@ void Session::load_geometry(const model::BundleReader& bundle) {
   }
   const auto planes = parse_planes(arguments_.planes, bundle.n_planes());
   const auto box = arguments_.region.empty() ? std::nullopt : std::optional(parse_box(arguments_.region));
-  const auto mesh = bundle.mesh(arguments_.verify);
+  const auto mesh = bundle.mesh({planes, !arguments_.profile, n_threads_});
   run_.cells = choose_cells(mesh, planes, box);
   if (arguments_.profile) {
     run_.average.emplace(mesh, run_.cells);
@@ -196,7 +207,23 @@ std::span<const float> Session::choose(std::span<const float> predicted, std::ve
   return chosen;
 }
 
-void Session::write(Format format, const Prediction& prediction, Desk& desk) {
+std::unique_ptr<base::AtomicFile> Session::file_for(Format format, const field::CaseInputs& inputs) const {
+  return std::make_unique<base::AtomicFile>(target(format, inputs),
+                                            arguments_.sync ? base::Sync::content : base::Sync::none);
+}
+
+void Session::write_hdf_file(std::future<HdfFile>& begun, const Prediction& prediction) {
+  std::unique_ptr<base::AtomicFile> file;
+  {
+    const std::scoped_lock lock(hdf5_);
+    auto hdf = begun.get();
+    hdf.writer.finish(prediction);
+    file = std::move(hdf.file);
+  }
+  file->commit();
+}
+
+void Session::write_text(Format format, const Prediction& prediction, Desk& desk) {
   desk.text.clear();
   if (format == Format::csv) write_csv(run_, prediction, desk.text);
   if (format == Format::txt) write_sfw3d(run_, prediction, desk.text);
@@ -205,14 +232,9 @@ void Session::write(Format format, const Prediction& prediction, Desk& desk) {
     write_all(stdout, desk.text, "standard output");
     return;
   }
-  base::AtomicFile file(target(format, *prediction.inputs), false);
-  if (format == Format::hdf) {
-    const std::scoped_lock lock(hdf5_);
-    write_hdf(run_, prediction, file.temporary());
-  } else {
-    write_text_file(file.temporary(), desk.text);
-  }
-  file.commit();
+  const auto file = file_for(format, *prediction.inputs);
+  write_text_file(file->temporary(), desk.text);
+  file->commit();
 }
 
 void Session::predict_case(std::size_t i, Desk& desk, int n_threads) {
@@ -227,6 +249,13 @@ void Session::predict_case(std::size_t i, Desk& desk, int n_threads) {
     lines_->add(i, line + "; not written (--strict)");
     return;
   }
+  // All of the file but its values is written while they are computed; in a table every thread has a case of its own to do.
+  const bool at_once = n_threads > 1 && arguments_.writes(Format::hdf);
+  auto hdf = std::async(at_once ? std::launch::async : std::launch::deferred, [&] {
+    auto file = file_for(Format::hdf, inputs);
+    const auto path = file->temporary();
+    return HdfFile{std::move(file), HdfWriter(run_, inputs, assessment, path)};
+  });
   desk.values.resize(predictor_->size());
   if (run_.level) desk.half_width.resize(predictor_->size());
   predictor_->predict(inputs.values, desk.values, desk.half_width, desk.scratch, n_threads);
@@ -240,7 +269,11 @@ void Session::predict_case(std::size_t i, Desk& desk, int n_threads) {
       .change = desk.physics.change ? &*desk.physics.change : nullptr};
   desk.compute += lap.lap();
   for (const auto format : arguments_.formats) {
-    write(format, prediction, desk);
+    if (format == Format::hdf) {
+      write_hdf_file(hdf, prediction);
+    } else {
+      write_text(format, prediction, desk);
+    }
     if (!arguments_.to_standard_output()) line += " -> " + target(format, inputs).string();
   }
   desk.write += lap.lap();

@@ -24,8 +24,7 @@ class Stopwatch {
 
 struct Timing {
   double open = 0;     ///< header of the bundle, cases, mesh
-  double verify = 0;   ///< reading the bundle and comparing its digests
-  double build = 0;    ///< models from their tensors
+  double read = 0;     ///< models: their tensors read, compared with their digests, made ready
   double prepare = 0;  ///< what all output files share
   double compute = 0;  ///< guard and models, summed over cases and threads
   double write = 0;    ///< files, summed over cases and threads

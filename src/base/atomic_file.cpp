@@ -33,8 +33,8 @@ void sync(const std::filesystem::path& path, int flags) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path target, bool durable)
-    : target_(std::move(target)), durable_(durable) {
+AtomicFile::AtomicFile(std::filesystem::path target, Sync sync)
+    : target_(std::move(target)), sync_(sync) {
   static std::atomic<int> counter{0};
   const auto folder = folder_of(target_);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) throw system_error("cannot write into folder", folder);
@@ -47,10 +47,10 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-  if (durable_) sync(temporary_, O_RDONLY);
+  if (sync_ != Sync::none) sync(temporary_, O_RDONLY);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw system_error("cannot rename to", target_);
   committed_ = true;
-  if (durable_) sync(folder_of(target_), O_RDONLY | O_DIRECTORY);
+  if (sync_ == Sync::all) sync(folder_of(target_), O_RDONLY | O_DIRECTORY);
 }
 
 void write_text(const std::filesystem::path& target, std::string_view text) {

@@ -69,10 +69,11 @@ void write_bytes(std::ofstream& stream, std::span<const std::byte> bytes) {
 
 }  // namespace
 
-TensorFile TensorFile::open(const std::filesystem::path& path) {
+TensorFile TensorFile::open(const std::filesystem::path& path, Verify verify) {
   const auto mapping = MappedFile::open(path);
   const auto bytes = mapping->bytes();
   TensorFile file;
+  file.verify_ = verify;
   file.where_ = path.string();
   const auto json = header_text(bytes, file.where_);
   const auto* data = bytes.data() + length_bytes + json.size();
@@ -103,6 +104,12 @@ TensorFile TensorFile::open(const std::filesystem::path& path) {
 }
 
 const Tensor& TensorFile::tensor(std::string_view name) const {
+  const Tensor& found = find(name);
+  if (verify_ == Verify::on_use) compare(name, found);
+  return found;
+}
+
+const Tensor& TensorFile::find(std::string_view name) const {
   const auto found = tensors_.find(std::string(name));
   if (found != tensors_.end()) return found->second;
   std::vector<std::string> names;
@@ -148,11 +155,12 @@ void TensorFile::set_text(std::string key, std::string text) {
   texts_.insert_or_assign(std::move(key), std::move(text));
 }
 
-void TensorFile::verify(std::string_view name) const {
-  const auto bytes = tensor(name).bytes();
+void TensorFile::verify(std::string_view name) const { compare(name, find(name)); }
+
+void TensorFile::compare(std::string_view name, const Tensor& tensor) const {
   const auto stored = digests_.find(std::string(name));
   if (stored == digests_.end()) return;  // made in memory: nothing to compare with
-  const auto found = base::sha256(bytes);
+  const auto found = base::sha256(tensor.bytes());
   if (found != stored->second) {
     refuse(where_ + ":" + std::string(name), "tensor does not match its SHA-256", found, stored->second);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "dense_kernel.hpp"
 #include "elrom/base/error.hpp"
@@ -33,25 +34,36 @@ void check_submodel(const Submodel& submodel, const BandedNetworks::Parts& parts
           std::to_string(parts.planes.n_planes * n_out));
 }
 
+/// Planes in which the cover may differ: without masks, any plane stands for all.
+std::vector<std::int32_t> planes_to_check(const BandedNetworks::Parts& parts) {
+  const bool masked = std::any_of(parts.submodels.begin(), parts.submodels.end(),
+                                  [](const Submodel& submodel) { return !submodel.mask.empty(); });
+  if (!masked) return {0};
+  if (!parts.loaded_planes.empty()) return parts.loaded_planes;
+  std::vector<std::int32_t> all(parts.planes.n_planes);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 void check_cover(const BandedNetworks::Parts& parts) {
-  std::vector<int> answers(parts.planes.n_planes * parts.n_columns, 0);
   for (const auto& submodel : parts.submodels)
-    for (std::size_t j = 0; j < submodel.columns.size(); ++j) {
-      const auto column = submodel.columns[j];
+    for (const auto column : submodel.columns)
       if (column < 0 || static_cast<std::size_t>(column) >= parts.n_columns)
         require(false, "submodel " + submodel.name, "column " + std::to_string(column),
                 "0 to " + std::to_string(parts.n_columns - 1));
-      for (std::size_t plane = 0; plane < parts.planes.n_planes; ++plane)
-        answers[plane * parts.n_columns + static_cast<std::size_t>(column)] +=
-            submodel.answers(plane, j) ? 1 : 0;
-    }
-  const auto wrong = std::find_if(answers.begin(), answers.end(), [](int n) { return n != 1; });
-  if (wrong == answers.end()) return;
-  const auto cell = static_cast<std::size_t>(wrong - answers.begin());
-  require(
-      false,
-      "plane " + std::to_string(cell / parts.n_columns) + ", column " + std::to_string(cell % parts.n_columns),
-      std::to_string(*wrong) + " submodels", "one");
+  std::vector<int> answers(parts.n_columns);
+  for (const auto plane : planes_to_check(parts)) {
+    std::fill(answers.begin(), answers.end(), 0);
+    for (const auto& submodel : parts.submodels)
+      for (std::size_t j = 0; j < submodel.columns.size(); ++j)
+        if (submodel.answers(static_cast<std::size_t>(plane), j))
+          ++answers[static_cast<std::size_t>(submodel.columns[j])];
+    const auto wrong = std::find_if(answers.begin(), answers.end(), [](int n) { return n != 1; });
+    if (wrong == answers.end()) continue;
+    require(false,
+            "plane " + std::to_string(plane) + ", column " + std::to_string(wrong - answers.begin()),
+            std::to_string(*wrong) + " submodels", "one");
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // How a networks model lies in a bundle (data/FORMATS.md, "Field model: networks").
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -52,7 +53,7 @@ std::string build_prefix(const std::string& submodel, std::size_t b) {
 }
 
 Submodel load_submodel(const io::TensorFile& file, const std::string& prefix, const Json& description,
-                       std::size_t n_planes) {
+                       std::size_t n_planes, const Wanted& wanted) {
   Submodel submodel;
   submodel.name = description.at("name").get<std::string>();
   submodel.scores = description.at("scores").get<std::vector<double>>();
@@ -62,9 +63,19 @@ Submodel load_submodel(const io::TensorFile& file, const std::string& prefix, co
     const auto mask = file.tensor(prefix + "/mask", std::array{n_planes, columns.size()}).u8();
     submodel.mask.assign(mask.begin(), mask.end());
   }
+  const bool answers =
+      wanted.planes.empty() || std::any_of(wanted.planes.begin(), wanted.planes.end(), [&](std::int32_t plane) {
+        return submodel.answers(static_cast<std::size_t>(plane));
+      });
+  if (!answers) return submodel;
   const auto n_builds = size_of(description, "builds");
+  if (submodel.scores.size() != n_builds)
+    throw InputError({.what = "not one score a build", .where = file.where() + ":" + prefix});
+  const std::size_t best = submodel.best();
   for (std::size_t b = 0; b < n_builds; ++b)
-    submodel.builds.push_back(Network::load(file, build_prefix(prefix, b)));
+    if (!wanted.best_build_only || b == best)
+      submodel.builds.push_back(Network::load(file, build_prefix(prefix, b)));
+  if (wanted.best_build_only) submodel.scores = {submodel.scores[best]};
   return submodel;
 }
 
@@ -75,7 +86,7 @@ Combination combination_of(const std::string& name) {
 }
 
 BandedNetworks::Parts load_parts(const io::TensorFile& file, const std::string& prefix,
-                                 const Json& description) {
+                                 const Json& description, const Wanted& wanted) {
   BandedNetworks::Parts parts;
   parts.n_columns = size_of(description, "columns");
   parts.planes = {plane_encoding_of(description.at("plane_encoding").get<std::string>()),
@@ -87,10 +98,17 @@ BandedNetworks::Parts load_parts(const io::TensorFile& file, const std::string& 
                   numbers(file, prefix + "/input_relevance")};
   parts.outputs = {file.tensor(prefix + "/output_mean").matrix(),
                    file.tensor(prefix + "/output_deviation").matrix()};
+  for (const auto plane : wanted.planes)
+    if (plane < 0 || static_cast<std::size_t>(plane) >= parts.planes.n_planes)
+      throw InputError({"no such plane", file.where() + ":" + prefix, std::to_string(plane),
+                        "0 to " + std::to_string(parts.planes.n_planes - 1)});
+  parts.loaded_planes = wanted.planes;
   const auto& submodels = description.at("submodels");
-  for (std::size_t i = 0; i < submodels.size(); ++i)
-    parts.submodels.push_back(
-        load_submodel(file, submodel_prefix(prefix, i), submodels.at(i), parts.planes.n_planes));
+  for (std::size_t i = 0; i < submodels.size(); ++i) {
+    auto submodel =
+        load_submodel(file, submodel_prefix(prefix, i), submodels.at(i), parts.planes.n_planes, wanted);
+    if (!submodel.builds.empty()) parts.submodels.push_back(std::move(submodel));
+  }
   return parts;
 }
 
@@ -118,9 +136,10 @@ void BandedNetworks::save(io::TensorFile& file, const std::string& prefix) const
   }
 }
 
-std::unique_ptr<FieldModel> BandedNetworks::load(const io::TensorFile& file, const std::string& prefix) {
+std::unique_ptr<FieldModel> BandedNetworks::load(const io::TensorFile& file, const std::string& prefix,
+                                             const Wanted& wanted) {
   try {
-    return std::make_unique<BandedNetworks>(load_parts(file, prefix, Json::parse(file.text(prefix))));
+    return std::make_unique<BandedNetworks>(load_parts(file, prefix, Json::parse(file.text(prefix)), wanted));
   } catch (const Json::exception& error) {
     throw InputError(
         {"unreadable description of a networks model", file.where() + ":" + prefix, error.what()});

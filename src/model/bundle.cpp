@@ -1,7 +1,10 @@
 #include "elrom/model/bundle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <functional>
+#include <numeric>
 
 #include "bundle_info.hpp"
 #include "elrom/base/error.hpp"
@@ -38,32 +41,10 @@ void check_kind(const io::TensorFile& file) {
   }
 }
 
-/// Names of the tensors under "<prefix>/".
-std::vector<std::string> tensors_under(const io::TensorFile& file, const std::string& prefix) {
-  std::vector<std::string> names;
-  const auto& tensors = file.tensors();
-  for (auto item = tensors.lower_bound(prefix + "/"); item != tensors.end(); ++item) {
-    if (!item->first.starts_with(prefix + "/")) break;
-    names.push_back(item->first);
-  }
-  return names;
-}
-
-void verify_tensors(const io::TensorFile& file, std::vector<std::string> names, int n_threads) {
-  // The longest first, so that the threads end together.
-  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
-    return file.tensor(a).bytes().size() > file.tensor(b).bytes().size();
-  });
-  base::parallel_for(names.size(), n_threads, [&](std::size_t i, int) { file.verify(names[i]); });
-}
-
-void verify_prefix(const io::TensorFile& file, const std::string& prefix) {
-  verify_tensors(file, tensors_under(file, prefix), 1);
-}
-
 }  // namespace
 
-BundleReader::BundleReader(const std::filesystem::path& path) : file_(io::TensorFile::open(path)) {
+BundleReader::BundleReader(const std::filesystem::path& path, io::Verify verify)
+    : file_(io::TensorFile::open(path, verify)) {
   check_kind(file_);
   auto description = bundle_description(file_.text("bundle"), file_.where());
   info_ = std::move(description.info);
@@ -72,22 +53,41 @@ BundleReader::BundleReader(const std::filesystem::path& path) : file_(io::Tensor
   mesh_digest_ = std::move(description.mesh_digest);
 }
 
-field::Mesh BundleReader::mesh(bool verify) const {
-  if (verify) {
-    for (const char* part : {"mesh/centre", "mesh/volume", "mesh/points", "mesh/corners"}) file_.verify(part);
+field::Mesh BundleReader::mesh(const MeshPart& part) const {
+  auto planes = part.planes;
+  if (planes.empty()) {
+    planes.resize(n_planes_);
+    std::iota(planes.begin(), planes.end(), 0);
   }
   field::Mesh mesh;
-  mesh.n_planes = n_planes_;
+  mesh.n_planes = planes.size();
   mesh.n_columns = n_columns_;
-  const std::size_t n_cells = mesh.n_cells();
-  const std::size_t centre_shape[] = {n_cells, 3}, volume_shape[] = {n_cells}, points_shape[] = {0, 3},
-                    corners_shape[] = {n_cells, 8};
-  mesh.centre = file_.tensor("mesh/centre", centre_shape).matrix64();
-  mesh.points = file_.tensor("mesh/points", points_shape).matrix64();
-  const auto volume = file_.tensor("mesh/volume", volume_shape).f64();
-  const auto corners = file_.tensor("mesh/corners", corners_shape).i32();
-  mesh.volume.assign(volume.begin(), volume.end());
-  mesh.corners.assign(corners.begin(), corners.end());
+  const std::size_t n_cells = n_planes_ * n_columns_;
+  const std::array<std::size_t, 2> centre_shape{n_cells, 3}, points_shape{0, 3}, corners_shape{n_cells, 8};
+  std::span<const double> centre, volume;
+  std::span<const std::int32_t> corners;
+  const std::array<std::function<void()>, 4> readers{
+      [&] { corners = file_.tensor("mesh/corners", corners_shape).i32(); },
+      [&] { mesh.points = file_.tensor("mesh/points", points_shape).matrix64(); },
+      [&] { centre = file_.tensor("mesh/centre", centre_shape).f64(); },
+      [&] { volume = file_.tensor("mesh/volume", std::array{n_cells}).f64(); }};
+  const std::size_t first = part.with_corners ? 0 : 2;
+  base::parallel_for(readers.size() - first, part.n_threads, [&](std::size_t i, int) { readers[first + i](); });
+  mesh.centre.resize(static_cast<Eigen::Index>(mesh.n_cells()), 3);
+  double* to = mesh.centre.data();
+  for (const auto plane : planes) {
+    if (plane < 0 || static_cast<std::size_t>(plane) >= n_planes_) {
+      throw InputError({.what = "no plane " + std::to_string(plane),
+                        .where = file_.where(),
+                        .expected = "0 to " + std::to_string(n_planes_ - 1)});
+    }
+    const auto rows = [&](auto values, std::size_t width) {
+      return values.subspan(static_cast<std::size_t>(plane) * n_columns_ * width, n_columns_ * width);
+    };
+    to = std::ranges::copy(rows(centre, 3), to).out;
+    std::ranges::copy(rows(volume, 1), std::back_inserter(mesh.volume));
+    if (part.with_corners) std::ranges::copy(rows(corners, 8), std::back_inserter(mesh.corners));
+  }
   for (const auto corner : mesh.corners) {
     if (corner < 0 || corner >= mesh.points.rows()) {
       throw InputError({.what = "broken mesh",
@@ -99,24 +99,11 @@ field::Mesh BundleReader::mesh(bool verify) const {
   return mesh;
 }
 
-void BundleReader::verify(std::span<const field::FieldInfo> fields, bool with_uncertainty,
-                          int n_threads) const {
-  auto names = tensors_under(file_, "guard");
-  for (auto& name : tensors_under(file_, "mesh/packed")) names.push_back(std::move(name));
-  for (const auto& info : fields) {
-    for (auto& name : tensors_under(file_, field_prefix(info.name))) names.push_back(std::move(name));
-    if (!with_uncertainty) continue;
-    for (auto& name : tensors_under(file_, uncertainty_prefix(info.name))) names.push_back(std::move(name));
-  }
-  verify_tensors(file_, std::move(names), n_threads);
-}
-
-Guard BundleReader::guard(bool verify) const {
-  if (verify) verify_prefix(file_, "guard");
+Guard BundleReader::guard() const {
   return Guard::load(file_, "guard", info_.schema);
 }
 
-std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, bool verify) const {
+std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, const Wanted& wanted) const {
   const auto prefix = field_prefix(field);
   if (!file_.has_text(prefix)) {
     std::vector<std::string> names;
@@ -125,8 +112,7 @@ std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, bool v
                       .where = file_.where(),
                       .advice = base::name_advice(field, names)});
   }
-  if (verify) verify_prefix(file_, prefix);
-  auto model = load_field_model(file_, prefix);
+  auto model = load_field_model(file_, prefix, wanted);
   if (model->n_columns() != n_columns_) {
     throw InputError({.what = "model of another mesh",
                       .where = file_.where() + ":" + prefix,
@@ -136,10 +122,9 @@ std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, bool v
   return model;
 }
 
-std::unique_ptr<Uncertainty> BundleReader::uncertainty(const std::string& field, bool verify) const {
+std::unique_ptr<Uncertainty> BundleReader::uncertainty(const std::string& field) const {
   const auto prefix = uncertainty_prefix(field);
   if (!file_.has_text(prefix)) return nullptr;
-  if (verify) verify_prefix(file_, prefix);
   return std::make_unique<Uncertainty>(Uncertainty::load(file_, prefix));
 }
 

@@ -62,14 +62,15 @@ void BlendModel::save(io::TensorFile& file, const std::string& prefix) const {
   save_vector(file, prefix + "/weights", weights);
 }
 
-std::unique_ptr<FieldModel> BlendModel::load(const io::TensorFile& file, const std::string& prefix) {
+std::unique_ptr<FieldModel> BlendModel::load(const io::TensorFile& file, const std::string& prefix,
+                                             const Wanted& wanted) {
   const std::string where = file.where() + ":" + prefix;
   const std::size_t n = count_of(read_description(file, prefix), "parts", where);
   const Eigen::VectorXd weights = load_vector(file, prefix + "/weights", n);
   std::vector<Part> parts;
   for (std::size_t i = 0; i < n; ++i) {
     parts.push_back({weights[static_cast<Eigen::Index>(i)],
-                     load_field_model(file, prefix + "/part" + std::to_string(i))});
+                     load_field_model(file, prefix + "/part" + std::to_string(i), wanted)});
   }
   return std::make_unique<BlendModel>(std::move(parts), where);
 }
@@ -173,7 +174,8 @@ void MirrorModel::save(io::TensorFile& file, const std::string& prefix) const {
   model_->save(file, prefix + "/model");
 }
 
-std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const std::string& prefix) {
+std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const std::string& prefix,
+                                             const Wanted& wanted) {
   const std::string where = file.where() + ":" + prefix;
   const nlohmann::json description = read_description(file, prefix);
   const std::size_t n = count_of(description, "images", where);
@@ -184,7 +186,7 @@ std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const 
         {.what = "incomplete description of a model", .where = where, .expected = "one field sign an image"});
   }
   std::unique_ptr<MirrorModel> mirror(new MirrorModel());
-  mirror->model_ = load_field_model(file, prefix + "/model");
+  mirror->model_ = load_field_model(file, prefix + "/model", wanted);
   std::size_t n_inputs = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::string image = prefix + "/image" + std::to_string(i);

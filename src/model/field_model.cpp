@@ -10,7 +10,8 @@
 
 namespace elrom::model {
 
-std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file, const std::string& prefix) {
+std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file, const std::string& prefix,
+                                             const Wanted& wanted) {
   const auto description = nlohmann::json::parse(file.text(prefix), nullptr, false);
   if (!description.is_object() || !description.contains("kind") || !description["kind"].is_string()) {
     throw InputError({.what = "no description of a model",
@@ -20,7 +21,7 @@ std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file, const s
   const auto kind = description["kind"].get<std::string>();
   std::vector<std::string> names;
   for (const auto& entry : model_kinds()) {
-    if (entry.name == kind) return entry.load(file, prefix);
+    if (entry.name == kind) return entry.load(file, prefix, wanted);
     names.emplace_back(entry.name);
   }
   throw InputError({.what = "unknown kind of model '" + kind + "'",

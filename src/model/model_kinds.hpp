@@ -12,7 +12,8 @@ namespace elrom::model {
 
 struct ModelKind {
   std::string_view name;  ///< FieldModel::kind() of what `load` gives
-  std::unique_ptr<FieldModel> (*load)(const io::TensorFile& file, const std::string& prefix);
+  std::unique_ptr<FieldModel> (*load)(const io::TensorFile& file, const std::string& prefix,
+                                      const Wanted& wanted);
 };
 
 [[nodiscard]] std::span<const ModelKind> model_kinds();

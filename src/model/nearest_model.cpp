@@ -63,7 +63,8 @@ void NearestModel::save(io::TensorFile& file, const std::string& prefix) const {
   file.set(prefix + "/cases", values_);
 }
 
-std::unique_ptr<FieldModel> NearestModel::load(const io::TensorFile& file, const std::string& prefix) {
+std::unique_ptr<FieldModel> NearestModel::load(const io::TensorFile& file, const std::string& prefix,
+                                             const Wanted& /*wanted*/) {
   const std::string where = file.where() + ":" + prefix;
   const nlohmann::json description = read_description(file, prefix);
   if (!description.contains("n_columns") || !description["n_columns"].is_number_unsigned()) {

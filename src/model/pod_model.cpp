@@ -158,7 +158,8 @@ const std::vector<std::string>& PodModel::kinds() {
   return kinds;
 }
 
-std::unique_ptr<FieldModel> PodModel::load(const io::TensorFile& file, const std::string& prefix) {
+std::unique_ptr<FieldModel> PodModel::load(const io::TensorFile& file, const std::string& prefix,
+                                             const Wanted& /*wanted*/) {
   const std::array<std::size_t, 2> plane{0, 0};
   const std::array<std::size_t, 3> modes{0, 0, 0};
   Parts parts{.kind = text_of(read_description(file, prefix), "kind", file.where() + ":" + prefix),

@@ -1,10 +1,10 @@
 #include "elrom/model/predictor.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <mutex>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
@@ -12,8 +12,6 @@
 
 namespace elrom::model {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Planes are shared out among threads in multiples of this: the models' kernels work on whole vectors of
 /// planes.
@@ -108,14 +106,15 @@ struct Predictor::Impl {
   std::vector<field::FieldInfo> fields;
   std::vector<std::int32_t> planes;
   std::vector<Bounds> bounds;
-  std::vector<std::unique_ptr<FieldModel>> models;
-  std::vector<std::unique_ptr<Uncertainty>> uncertainty;
-  std::vector<float> quantiles;  //!< of the asked level, (n_fields)
+  mutable std::vector<std::unique_ptr<FieldModel>> models;
+  mutable std::vector<std::unique_ptr<Uncertainty>> uncertainty;
+  mutable std::vector<float> quantiles;             //!< of the asked level, (n_fields)
+  mutable std::unique_ptr<std::once_flag[]> loaded;  //!< guards the three above, (n_fields)
   std::vector<Unit> serial_units;
-  LoadTimes times;
 
   Impl(BundleReader reader, Selection wanted);
-  void load(std::size_t i_field);
+  void load(std::size_t i_field) const;
+  void read(std::size_t i_field) const;
   void compute(const Unit& unit, std::span<const double> inputs, std::span<float> values,
                std::span<float> half_width, Workspace& workspace) const;
 };
@@ -128,22 +127,23 @@ Predictor::Impl::Impl(BundleReader reader, Selection wanted)
       models(fields.size()),
       uncertainty(fields.size()),
       quantiles(fields.size(), 0.0F),
+      loaded(std::make_unique<std::once_flag[]>(fields.size())),
       serial_units(units_for(fields.size(), planes.size(), 1)) {
-  const auto begin = Clock::now();
-  if (selection.verify) bundle.verify(fields, selection.interval_level.has_value(), selection.n_threads);
-  const auto verified = Clock::now();
-  guard = bundle.guard(false);
+  guard = bundle.guard();
   for (const auto& info : fields) bounds.emplace_back(info);
+  if (selection.load_on_use) return;
   base::parallel_for(fields.size(), selection.n_threads, [&](std::size_t i, int) { load(i); });
-  times = {std::chrono::duration<double>(verified - begin).count(),
-           std::chrono::duration<double>(Clock::now() - verified).count()};
 }
 
-void Predictor::Impl::load(std::size_t i_field) {
+void Predictor::Impl::load(std::size_t i_field) const {
+  std::call_once(loaded[i_field], [&] { read(i_field); });
+}
+
+void Predictor::Impl::read(std::size_t i_field) const {
   const auto& name = fields[i_field].name;
-  models[i_field] = bundle.model(name, false);
+  models[i_field] = bundle.model(name, {selection.planes, selection.best_build_only});
   if (!selection.interval_level) return;
-  uncertainty[i_field] = bundle.uncertainty(name, false);
+  uncertainty[i_field] = bundle.uncertainty(name);
   if (!uncertainty[i_field]) {
     throw UsageError({.what = "no prediction intervals for field '" + name + "'",
                       .where = bundle.file().where(),
@@ -159,6 +159,7 @@ void Predictor::Impl::compute(const Unit& unit, std::span<const double> inputs, 
   const std::size_t n = unit.n_planes * n_columns;
   const auto asked = std::span(planes).subspan(unit.first_plane, unit.n_planes);
   const auto own = values.subspan(first, n);
+  load(unit.i_field);
   models[unit.i_field]->predict({inputs, asked, selection.best_build_only}, own, {}, workspace);
   if (!bounds[unit.i_field].enforce(own)) {
     throw NumericalError({.what = "prediction is not finite", .where = "field " + fields[unit.i_field].name});
@@ -176,7 +177,6 @@ Predictor::Predictor(const std::filesystem::path& bundle, Selection selection)
 Predictor::~Predictor() = default;
 Predictor::Predictor(Predictor&&) noexcept = default;
 
-const Predictor::LoadTimes& Predictor::load_times() const { return impl_->times; }
 const BundleReader& Predictor::bundle() const { return impl_->bundle; }
 const Guard& Predictor::guard() const { return impl_->guard; }
 const std::vector<field::FieldInfo>& Predictor::fields() const { return impl_->fields; }

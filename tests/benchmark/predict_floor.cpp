@@ -48,16 +48,19 @@ double read_rate(const std::filesystem::path& path, int n_threads) {
   return static_cast<double>(size) / seconds;
 }
 
-/// A file of that size written in one go, as plain as can be.
-double write_rate(const std::filesystem::path& folder, std::size_t size) {
+/// A file of that size written in one go, as plain as can be; with `sync`, waiting until its bytes are on the disk, as
+/// elrom-predict leaves its files.
+double write_rate(const std::filesystem::path& folder, std::size_t size, bool sync) {
   const std::vector<char> bytes(size, 'x');
-  const auto path = folder / "floor.tmp";
+  const auto path = folder / "floor.tmp", target = folder / "floor";
   const double seconds = best_seconds(9, [&] {
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     check(file >= 0 && ::write(file, bytes.data(), size) == static_cast<ssize_t>(size), "write");
+    check(!sync || ::fsync(file) == 0, "sync");
     ::close(file);
+    std::filesystem::rename(path, target);
   });
-  std::filesystem::remove(path);
+  std::filesystem::remove(target);
   return static_cast<double>(size) / seconds;
 }
 
@@ -98,7 +101,7 @@ struct Work {
 Work work_of(const model::BundleReader& bundle) {
   Work work;
   for (const auto& info : bundle.info().fields) {
-    const auto model = bundle.model(info.name, false);
+    const auto model = bundle.model(info.name);
     const auto* networks = dynamic_cast<const model::BandedNetworks*>(model.get());
     if (networks == nullptr) continue;
     const bool one = networks->parts().combination == model::Combination::best;
@@ -122,10 +125,11 @@ std::string Floor::text() const {
   return fmt::format(
       "floor {:.2f} = read {:.1f} MB at {:.1f} GB/s ({:.2f}) + {:.0f} million multiply-adds at {:.0f}e9/s of "
       "{} ({:.2f}) + "
-      "write {:.1f} MB at {:.1f} GB/s ({:.2f})",
+      "write {:.1f} MB at {:.2f} GB/s{} ({:.2f})",
       total_ms(), bytes_read * 1e-6, read_rate * 1e-9, 1e3 * bytes_read / read_rate, multiply_adds * 1e-6,
       sgemm_rate * 1e-9, blas ? "OpenBLAS" : "Eigen", 1e3 * multiply_adds / sgemm_rate, bytes_written * 1e-6,
-      write_rate * 1e-9, 1e3 * bytes_written / write_rate);
+      write_rate * 1e-9,
+      synced ? " with fsync" : "", 1e3 * bytes_written / write_rate);
 }
 
 nlohmann::json Floor::json() const {
@@ -133,14 +137,17 @@ nlohmann::json Floor::json() const {
           {"read_rate", read_rate},
           {"bytes_written", bytes_written},
           {"write_rate", write_rate},
+          {"synced", synced},
           {"multiply_adds", multiply_adds},
           {"multiply_add_rate", sgemm_rate},
           {"blas", blas}};
 }
 
-Floor floor_of(const std::filesystem::path& bundle, const std::filesystem::path& output, int n_threads) {
+Floor floor_of(const std::filesystem::path& bundle, const std::filesystem::path& output, int n_threads,
+               bool sync) {
   const model::BundleReader reader(bundle);
   Floor floor;
+  floor.synced = sync;
   for (const auto& [name, tensor] : reader.file().tensors()) {
     const bool read =
         name.starts_with("fields/") || name.starts_with("guard/") || name.starts_with("mesh/packed/");
@@ -150,7 +157,7 @@ Floor floor_of(const std::filesystem::path& bundle, const std::filesystem::path&
     if (entry.path().extension() == ".hdf") floor.bytes_written = static_cast<double>(entry.file_size());
   }
   floor.read_rate = read_rate(bundle, n_threads);
-  floor.write_rate = write_rate(output, static_cast<std::size_t>(floor.bytes_written));
+  floor.write_rate = write_rate(output, static_cast<std::size_t>(floor.bytes_written), sync);
   const auto work = work_of(reader);
   floor.multiply_adds = work.multiply_adds;
   floor.sgemm_rate = sgemm_rate(work.units, static_cast<int>(reader.n_planes()), n_threads, floor.blas);

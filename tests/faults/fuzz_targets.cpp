@@ -60,9 +60,8 @@ const fs::path& good_bundle() {
 }
 
 void load_and_predict(const fs::path& path, bool verify) {
-  model::Selection selection;
-  selection.verify = verify;
-  const model::Predictor predictor(path, selection);
+  const model::Predictor predictor(
+      model::BundleReader(path, verify ? io::Verify::on_use : io::Verify::never));
   std::vector<float> values(predictor.size());
   const std::vector<double> inputs(predictor.bundle().info().schema.size(), 1.0);
   model::Predictor::Scratch scratch;

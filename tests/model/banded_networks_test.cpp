@@ -153,6 +153,14 @@ TEST(BandedNetworks, MasksShareThePlanesOfAColumnOut) {
 
   EXPECT_FLOAT_EQ(result.values[3 * n_columns + 3], cell_value(parts, parts.submodels[0], 1, 3, 3, inputs));
   EXPECT_FLOAT_EQ(result.values[3 * n_columns + 4], cell_value(parts, parts.submodels[1], 1, 3, 4, inputs));
+
+  // Of planes that one submodel answers for, the other is not even read.
+  io::TensorFile file;
+  model.save(file, "m");
+  const auto some = BandedNetworks::load(file, "m", {.planes = {0, 2}});
+  const auto& loaded = dynamic_cast<const BandedNetworks&>(*some);
+  EXPECT_EQ(loaded.parts().submodels.size(), 1U);
+  EXPECT_EQ(predict(loaded, {0, 2}).values, predict(model, {0, 2}).values);
 }
 
 TEST(BandedNetworks, RefusesACellThatNobodyAnswersFor) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "elrom/base/error.hpp"
+#include "elrom/model/banded_networks.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -143,21 +144,63 @@ TEST(Bundle, UnknownKindOfModelIsRefused) {
   }
 }
 
+/// Copies a bundle with one bit of a tensor turned over.
+void damage(const std::filesystem::path& from, const std::filesystem::path& to, const std::string& tensor) {
+  const BundleReader reader(from);
+  const auto& good = reader.file().tensor(tensor);
+  const std::string pattern(reinterpret_cast<const char*>(good.bytes().data()), good.bytes().size());
+  std::string bytes = read_bytes(from);
+  bytes[bytes.find(pattern) + 3] ^= 1;
+  write_bytes(to, bytes);
+}
+
 TEST(Bundle, ADamagedWeightIsFoundWhenItsFieldIsRead) {
   const TemporaryFolder folder;
   sample_bundle().write(folder / "a");
-  const auto reader_before = BundleReader(folder / "a");
-  const auto& bias = reader_before.file().tensor("fields/pressure/submodel0/build0/layer0/bias");
-  const std::string pattern(reinterpret_cast<const char*>(bias.bytes().data()), bias.bytes().size());
-  std::string bytes = read_bytes(folder / "a");
-  bytes[bytes.find(pattern) + 3] ^= 1;
-  write_bytes(folder / "b", bytes);
+  damage(folder / "a", folder / "b", "fields/pressure/submodel0/build0/layer0/bias");
   const BundleReader reader(folder / "b");
 
   EXPECT_THROW((void)reader.model("pressure"), InputError);
   EXPECT_NO_THROW((void)reader.model("solid_diameter"));
-  EXPECT_NO_THROW((void)reader.model("pressure", false));
-  EXPECT_THROW(reader.verify(reader.info().fields, true, 2), InputError);
+  EXPECT_NO_THROW((void)BundleReader(folder / "b", io::Verify::never).model("pressure"));
+}
+
+TEST(Bundle, TheBestBuildIsReadWithoutTheOthers) {
+  const TemporaryFolder folder;
+  const auto written = sample_bundle();
+  written.write(folder / "a");
+  const auto& networks = dynamic_cast<const BandedNetworks&>(*written.models.at("pressure"));
+  const auto& submodel = networks.parts().submodels.front();
+  ASSERT_GT(submodel.builds.size(), 1U);
+
+  for (std::size_t b = 0; b < submodel.builds.size(); ++b) {
+    damage(folder / "a", folder / "b",
+           "fields/pressure/submodel0/build" + std::to_string(b) + "/layer0/bias");
+    const BundleReader reader(folder / "b");
+    if (b == submodel.best()) {
+      EXPECT_THROW((void)reader.model("pressure", {.best_build_only = true}), InputError);
+    } else {
+      EXPECT_NO_THROW((void)reader.model("pressure", {.best_build_only = true}));
+    }
+  }
+}
+
+TEST(Bundle, SomePlanesOfTheMeshAreRowsOfTheWhole) {
+  const TemporaryFolder folder;
+  sample_bundle().write(folder / "a");
+  const BundleReader reader(folder / "a");
+  const auto whole = reader.mesh();
+
+  const auto part = reader.mesh({.planes = {1, 3}});
+
+  ASSERT_EQ(part.n_cells(), 2 * reader.n_columns());
+  for (std::size_t i = 0; i < part.n_cells(); ++i) {
+    const auto cell = (i < reader.n_columns() ? 1 : 2) * reader.n_columns() + i;
+    EXPECT_EQ(part.centre.row(static_cast<Eigen::Index>(i)), whole.centre.row(static_cast<Eigen::Index>(cell)));
+    EXPECT_EQ(part.volume[i], whole.volume[cell]);
+    EXPECT_EQ(part.corners[8 * i + 5], whole.corners[8 * cell + 5]);
+  }
+  EXPECT_THROW((void)reader.mesh({.planes = {99}}), InputError);
 }
 
 }  // namespace

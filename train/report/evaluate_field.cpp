@@ -193,7 +193,7 @@ FieldAccuracy evaluate_field(const FieldTask& task, Figures* figures) {
     predictions.push_back(predict_cases(task, bundle));
     result.methods.push_back(score_method(task, truth, predictions.back(), statistics));
     if (!result.methods.back().available) continue;
-    const auto model = model::BundleReader(bundle.path).model(task.info.name, false);
+    const auto model = model::BundleReader(bundle.path).model(task.info.name);
     result.methods.back().kind = model->kind();
     result.methods.back().detail =
         blend_text(model::BundleReader(bundle.path).info().accuracy_json, task.info.name);

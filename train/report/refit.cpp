@@ -20,7 +20,7 @@ std::string method_of(const model::BundleReader& bundle) {
   const auto known = refittable_methods();
   std::map<std::string, int> votes;
   for (const auto& info : bundle.info().fields) {
-    const auto kind = bundle.model(info.name, false)->kind();
+    const auto kind = bundle.model(info.name)->kind();
     if (std::find(known.begin(), known.end(), kind) != known.end()) ++votes[kind];
   }
   const auto most = std::max_element(votes.begin(), votes.end(),

@@ -6,14 +6,17 @@
 
 namespace elrom::base {
 
+/// What survives a power cut right after commit(): `all`, the new file; `content`, the old file or the new one, whole; `none`,
+/// nothing is waited for.
+enum class Sync { none, content, all };
+
 /// Owns the temporary path until commit(); without commit the temporary is removed and the target is
 /// untouched. The temporary lies in the target's folder (rename must not cross file systems) and is named
 /// ".<target>.<process id>.<n>.tmp", so two writers never share one.
 class AtomicFile {
  public:
-  /// @param durable false leaves out the fsyncs (cheap to make again: predictions); the rename stays
   /// @throws SystemError when the folder does not exist or is not writable
-  explicit AtomicFile(std::filesystem::path target, bool durable = true);
+  explicit AtomicFile(std::filesystem::path target, Sync sync = Sync::all);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -24,7 +27,7 @@ class AtomicFile {
 
  private:
   std::filesystem::path target_, temporary_;
-  bool durable_;
+  Sync sync_;
   bool committed_ = false;
 };
 

@@ -61,6 +61,9 @@ class Tensor {
   const std::byte* data_ = nullptr;
 };
 
+/// Whether a tensor's bytes are compared with its digest each time it is fetched by name.
+enum class Verify { never, on_use };
+
 /// A set of named tensors and named texts, in memory or in a mapped file.
 class TensorFile {
  public:
@@ -68,11 +71,12 @@ class TensorFile {
   /// Maps `path`; checks the whole header (no duplicate names, overlaps, holes, overflow; header <= 100 MB)
   /// and its digest, but reads no tensor. @throws InputError naming the file, what was found and what was
   /// expected
-  [[nodiscard]] static TensorFile open(const std::filesystem::path& path);
+  [[nodiscard]] static TensorFile open(const std::filesystem::path& path, Verify verify = Verify::never);
 
   [[nodiscard]] bool has(std::string_view name) const { return tensors_.contains(std::string(name)); }
   [[nodiscard]] const std::map<std::string, Tensor>& tensors() const { return tensors_; }
-  /// @throws InputError naming file and tensor when it is not there (with the nearest name)
+  /// @throws InputError naming file and tensor when it is not there (with the nearest name), or, of a file opened
+  /// with Verify::on_use, when its bytes do not match their digest; tensors() compares nothing
   [[nodiscard]] const Tensor& tensor(std::string_view name) const;
   /// The same, with its shape checked; 0 in `shape` stands for any size.
   [[nodiscard]] const Tensor& tensor(std::string_view name, std::span<const std::size_t> shape) const;
@@ -98,6 +102,10 @@ class TensorFile {
   [[nodiscard]] const std::string& digest() const { return digest_; }
 
  private:
+  [[nodiscard]] const Tensor& find(std::string_view name) const;
+  void compare(std::string_view name, const Tensor& tensor) const;
+
+  Verify verify_ = Verify::never;
   std::map<std::string, Tensor> tensors_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, std::string> digests_;  //!< as read, by tensor

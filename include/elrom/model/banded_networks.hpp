@@ -45,6 +45,7 @@ class BandedNetworks : public FieldModel {
     OutputScaler outputs;
     std::vector<Submodel> submodels;
     Combination combination = Combination::mean;
+    std::vector<std::int32_t> loaded_planes;  ///< the planes it answers for; empty: all
   };
   /// @throws InputError when the parts do not fit, or a cell is answered by no submodel or by several
   explicit BandedNetworks(Parts parts);
@@ -57,7 +58,7 @@ class BandedNetworks : public FieldModel {
 
   void save(io::TensorFile& file, const std::string& prefix) const override;
   [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix);
+                                                        const std::string& prefix, const Wanted& wanted);
   /// The same model with weights in float16.
   [[nodiscard]] BandedNetworks halved() const;
 

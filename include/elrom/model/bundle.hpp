@@ -39,26 +39,31 @@ struct Bundle {
   void write(const std::filesystem::path& path) const;
 };
 
+/// What of the mesh is to be read.
+struct MeshPart {
+  std::vector<std::int32_t> planes;  ///< ascending; empty: all. The others are left out, the points are not
+  bool with_corners = true;          ///< false: centres and volumes only
+  int n_threads = 1;
+};
+
 /// Opens lazily: header and small parts only; a field's model is built from its tensors when asked for.
 /// Thread rule: const use from any thread.
 class BundleReader {
  public:
   /// @throws InputError for another kind or a newer major version, saying found and expected
-  explicit BundleReader(const std::filesystem::path& path);
+  /// @param verify with on_use, everything that is read from here on is compared with its digest
+  explicit BundleReader(const std::filesystem::path& path, io::Verify verify = io::Verify::on_use);
 
   [[nodiscard]] const BundleInfo& info() const { return info_; }
   [[nodiscard]] std::size_t n_planes() const { return n_planes_; }
   [[nodiscard]] std::size_t n_columns() const { return n_columns_; }
   [[nodiscard]] const std::string& mesh_digest() const { return mesh_digest_; }
-  [[nodiscard]] field::Mesh mesh(bool verify = true) const;
-  [[nodiscard]] Guard guard(bool verify = true) const;
-  /// Compares the digests of everything that prediction of `fields` reads, on n_threads, so that loading need
-  /// not.
-  void verify(std::span<const field::FieldInfo> fields, bool with_uncertainty, int n_threads) const;
-  /// @param verify compares the digests of the tensors it reads
-  [[nodiscard]] std::unique_ptr<FieldModel> model(const std::string& field, bool verify = true) const;
+  /// @throws InputError for a mesh that is broken or lacks a plane of `part`
+  [[nodiscard]] field::Mesh mesh(const MeshPart& part = {}) const;
+  [[nodiscard]] Guard guard() const;
+  [[nodiscard]] std::unique_ptr<FieldModel> model(const std::string& field, const Wanted& wanted = {}) const;
   /// nullptr when the bundle has none for that field
-  [[nodiscard]] std::unique_ptr<Uncertainty> uncertainty(const std::string& field, bool verify = true) const;
+  [[nodiscard]] std::unique_ptr<Uncertainty> uncertainty(const std::string& field) const;
   [[nodiscard]] const io::TensorFile& file() const { return file_; }
   [[nodiscard]] const std::string& digest() const { return file_.digest(); }
 

@@ -28,7 +28,7 @@ class BlendModel final : public FieldModel {
                Workspace& workspace) const override;
   void save(io::TensorFile& file, const std::string& prefix) const override;
   [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix);
+                                                        const std::string& prefix, const Wanted& wanted);
 
  private:
   std::vector<Part> parts_;
@@ -49,7 +49,7 @@ class MirrorModel final : public FieldModel {
                Workspace& workspace) const override;
   void save(io::TensorFile& file, const std::string& prefix) const override;
   [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix);
+                                                        const std::string& prefix, const Wanted& wanted);
 
  private:
   struct Image {

@@ -70,7 +70,16 @@ class FieldModel {
   virtual void save(io::TensorFile& file, const std::string& prefix) const = 0;
 };
 
-/// Reads what save() wrote. @throws InputError for an unknown kind or a wrong shape, naming file and tensor
-[[nodiscard]] std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file, const std::string& prefix);
+/// What of a model is to be loaded: predictions of these planes, by these builds. The rest of the file stays unread where the
+/// model's kind allows it.
+struct Wanted {
+  std::vector<std::int32_t> planes;  ///< ascending; empty: all
+  bool best_build_only = false;
+};
+
+/// Reads what save() wrote, or a part of it that answers queries for that part and no other.
+/// @throws InputError for an unknown kind or a wrong shape, naming file and tensor
+[[nodiscard]] std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file, const std::string& prefix,
+                                                           const Wanted& wanted = {});
 
 }  // namespace elrom::model

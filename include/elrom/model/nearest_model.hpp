@@ -27,7 +27,7 @@ class NearestModel final : public FieldModel {
                Workspace& workspace) const override;
   void save(io::TensorFile& file, const std::string& prefix) const override;
   [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix);
+                                                        const std::string& prefix, const Wanted& wanted);
 
  private:
   math::Standardiser scaler_;

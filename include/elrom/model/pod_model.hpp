@@ -42,7 +42,7 @@ class PodModel final : public FieldModel {
   /// Kinds that are stored in this form.
   [[nodiscard]] static const std::vector<std::string>& kinds();
   [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix);
+                                                        const std::string& prefix, const Wanted& wanted);
 
  private:
   /// out += sum over modes of weight * mode, or of weight * mode^2 for spreads. @param modes of one plane

@@ -19,7 +19,9 @@ struct Selection {
   std::vector<std::int32_t> planes;  ///< ascending
   bool best_build_only = false;
   std::optional<double> interval_level;  ///< half-widths of the prediction interval are computed when set
-  bool verify = true;                    ///< compare digests of what is read
+  /// A field's model is read when it is first predicted, not at once: the quickest way to a single prediction. What is wrong with
+  /// its tensors is then told by predict().
+  bool load_on_use = false;
   int n_threads = 1;                     ///< used while loading
 };
 
@@ -29,7 +31,7 @@ struct Selection {
 /// its own.
 class Predictor {
  public:
-  /// Loads just the models that `selection` names. @throws InputError, UsageError (unknown field or plane)
+  /// Loads just what `selection` names: those fields' models, of networks the builds and the submodels of those planes. @throws InputError, UsageError (unknown field or plane)
   explicit Predictor(const std::filesystem::path& bundle, Selection selection = {});
   explicit Predictor(BundleReader bundle, Selection selection = {});
   ~Predictor();
@@ -40,12 +42,6 @@ class Predictor {
     std::vector<double> held_inputs;
   };
 
-  /// How long loading took, in seconds.
-  struct LoadTimes {
-    double verify = 0;  ///< comparing digests, which also brings the bytes into memory
-    double build = 0;   ///< making models of them
-  };
-  [[nodiscard]] const LoadTimes& load_times() const;
   [[nodiscard]] const BundleReader& bundle() const;
   [[nodiscard]] const Guard& guard() const;
   [[nodiscard]] const std::vector<field::FieldInfo>& fields() const;  ///< selected, in the bundle's order
