@@ -219,7 +219,7 @@ INSTANTIATE_TEST_SUITE_P(
         HostileHeader{"TensorWithoutDigest",
                       "{" ELROM_DIGESTED R"(,"a":{"dtype":"U8","shape":[1],"data_offsets":[0,1]}})", "x",
                       "tensor without a digest"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 
 TEST(TensorFile, RefusesAHeaderLongerThanTheFileOrTheLimit) {
   const TemporaryFolder folder;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "elrom/base/error.hpp"
+#include "support/mesh_part.hpp"
 
 namespace elrom::predict {
 namespace {
@@ -12,22 +13,6 @@ namespace {
 using ::testing::ElementsAre;
 
 field::Mesh mesh() { return field::make_furnace_mesh({}, 2, 2, 3); }
-
-/// Some planes of a mesh, as a bundle gives them.
-field::Mesh part_of(const field::Mesh& whole, const std::vector<std::int32_t>& planes) {
-  auto part = whole;
-  part.n_planes = planes.size();
-  part.centre.resize(static_cast<Eigen::Index>(part.n_cells()), 3);
-  part.volume.clear();
-  part.corners.clear();
-  for (std::size_t i = 0; i < part.n_cells(); ++i) {
-    const auto cell = static_cast<std::size_t>(planes[i / part.n_columns]) * part.n_columns + i % part.n_columns;
-    part.centre.row(static_cast<Eigen::Index>(i)) = whole.centre.row(static_cast<Eigen::Index>(cell));
-    part.volume.push_back(whole.volume[cell]);
-    for (std::size_t k = 0; k < 8; ++k) part.corners.push_back(whole.corners[cell * 8 + k]);
-  }
-  return part;
-}
 
 TEST(Cells, EverythingIsChosenWithoutALimit) {
   const auto cells = choose_cells(mesh(), {}, {});
@@ -49,13 +34,13 @@ TEST(Cells, ARegionKeepsPlanesAndColumnsInOrder) {
 }
 
 TEST(Cells, PlanesAndRegionLimitTogether) {
-  EXPECT_THAT(choose_cells(part_of(mesh(), {0, 1}), {0, 1}, parse_box(":,:,20:")).planes, ElementsAre(1));
-  EXPECT_THROW((void)choose_cells(part_of(mesh(), {0}), {0}, parse_box(":,:,20:")), UsageError);
+  EXPECT_THAT(choose_cells(test::mesh_part(mesh(), {0, 1}), {0, 1}, parse_box(":,:,20:")).planes, ElementsAre(1));
+  EXPECT_THROW((void)choose_cells(test::mesh_part(mesh(), {0}), {0}, parse_box(":,:,20:")), UsageError);
 }
 
 TEST(Cells, GeometryOfAPartUsesJustItsPoints) {
   const auto furnace = mesh();
-  const auto part = part_of(furnace, {1});
+  const auto part = test::mesh_part(furnace, {1});
   const auto cells = choose_cells(part, {1}, {});
 
   const auto geometry = geometry_of(part, cells);
@@ -77,7 +62,7 @@ TEST(Cells, GeometryOfAPartUsesJustItsPoints) {
 TEST(Cells, PlaneAverageWeighsByVolume) {
   auto furnace = mesh();
   furnace.volume = {1, 3, 0.5, 0.5, 1, 1, 1, 1, 1, 1, 1, 1};
-  const auto part = part_of(furnace, {0, 2});
+  const auto part = test::mesh_part(furnace, {0, 2});
   const auto cells = choose_cells(part, {0, 2}, {});
   const PlaneAverage average(part, cells);
   const std::vector<float> values{10, 20, 2, 4, 1, 2, 3, 6};

@@ -114,7 +114,9 @@ TEST_F(SmallStudy, SecondRunRedoesNothingAndWritesTheSameBytes) {
   EXPECT_EQ(trainer->calls, calls);
   EXPECT_EQ(bundle_digest(), first);
   for (const auto* stage : {"screen", "model"}) {
-    if (timing()["stages"].contains(stage)) EXPECT_EQ(timing()["stages"][stage]["computed"], 0) << stage;
+    if (timing()["stages"].contains(stage)) {
+      EXPECT_EQ(timing()["stages"][stage]["computed"], 0) << stage;
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "prediction.hpp"
+#include "support/mesh_part.hpp"
 
 namespace elrom::test {
 
@@ -20,8 +21,9 @@ struct SampleRun {
     run.fields = {field::field_info("pressure"), field::field_info("gas_velocity_z")};
     run.fields[0].unit = "Pa";
     run.schema = field::InputSchema({{"air", "kg/s", "t/h"}, {"fuel", "kg/s", "kg/s"}});
-    run.cells = predict::choose_cells(mesh, planes, box);
-    run.geometry = predict::geometry_of(mesh, run.cells);
+    const auto part = planes.empty() ? mesh : mesh_part(mesh, planes);
+    run.cells = predict::choose_cells(part, planes, box);
+    run.geometry = predict::geometry_of(part, run.cells);
     run.bundle_digest = std::string(64, 'b');
     run.mesh_digest = mesh.digest();
     run.bundle_program = "ELROM";
