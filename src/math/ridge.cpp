@@ -43,13 +43,16 @@ Ridge fit_ridge(const MatrixD& x, const MatrixXd& y, std::span<const double> pen
   Ridge ridge;
   double least = std::numeric_limits<double>::infinity();
   for (double penalty : penalties) {
-    const Eigen::RowVectorXd squares = loo_residuals(d, y_centred, uty, penalty).colwise().squaredNorm();
-    if (squares.sum() < least || ridge.penalty == 0) {
-      least = squares.sum();
+    MatrixXd residuals = loo_residuals(d, y_centred, uty, penalty);
+    const double squares = residuals.squaredNorm();
+    if (squares < least || ridge.penalty == 0) {
+      least = squares;
       ridge.penalty = penalty;
-      ridge.loo_variance = squares.transpose() / static_cast<double>(x.rows());
+      ridge.loo_residuals = std::move(residuals);
     }
   }
+  ridge.loo_variance =
+      ridge.loo_residuals.colwise().squaredNorm().transpose() / static_cast<double>(x.rows());
   const VectorXd inverse = d.s.array() / (d.s.array().square() + ridge.penalty);
   ridge.weights = d.v * (inverse.asDiagonal() * uty);
   ridge.intercept = (y_mean - x_mean * ridge.weights).transpose();

@@ -125,7 +125,14 @@ std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, const 
 std::unique_ptr<Uncertainty> BundleReader::uncertainty(const std::string& field) const {
   const auto prefix = uncertainty_prefix(field);
   if (!file_.has_text(prefix)) return nullptr;
-  return std::make_unique<Uncertainty>(Uncertainty::load(file_, prefix));
+  auto uncertainty = std::make_unique<Uncertainty>(Uncertainty::load(file_, prefix));
+  if (uncertainty->n_inputs() != 0 && uncertainty->n_inputs() != info_.schema.size()) {
+    throw InputError({.what = "intervals of other boundary conditions",
+                      .where = file_.where() + ":" + prefix,
+                      .found = std::to_string(uncertainty->n_inputs()) + " inputs",
+                      .expected = std::to_string(info_.schema.size())});
+  }
+  return uncertainty;
 }
 
 }  // namespace elrom::model

@@ -167,7 +167,8 @@ void Predictor::Impl::compute(const Unit& unit, std::span<const double> inputs, 
   if (half_width.empty()) return;
   const auto width = half_width.subspan(first, n);
   uncertainty[unit.i_field]->scale(asked, width);
-  for (float& value : width) value *= quantiles[unit.i_field];
+  const auto factor = static_cast<float>(quantiles[unit.i_field] * uncertainty[unit.i_field]->factor(inputs));
+  for (float& value : width) value *= factor;
 }
 
 Predictor::Predictor(BundleReader bundle, Selection selection)

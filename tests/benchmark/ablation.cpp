@@ -1,265 +1,316 @@
-// bench-ablation: what each option of the networks buys and costs on real cases. Every variant differs from
-// the reference in one setting; the last rows are the networks on POD coefficients and the source's own
-// method as written.
+// bench-ablation: what each option of the networks buys and costs on real cases. Rows differ from the
+// reference in one setting; behind them networks on POD coefficients, the source's own method as written,
+// and, to compare with, the kernel smoother and the best simple peer.
 //
-// Error: root mean square over the judged cases, relative to that of the training mean (1 = no skill), mean
-// of the fields. Judged are the held-out cases, or (--cross) the cases of load-grouped folds of the training
-// cases, which is what settings are tuned with.
+// Error: root mean square relative to that of the training mean (1 = no skill), mean of the fields. "cross"
+// is over load-grouped folds of the training cases, by networks that did not see their fold, and is what
+// decides whether an option is on by default; "held out" is beside it to be read, not to choose by. Bands and
+// hyperparameters of the source's method come from all training cases. Seconds are those of the model that
+// answers for the held-out cases.
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <chrono>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <numeric>
 
-#include "elrom/base/app.hpp"
-#include "elrom/base/atomic_file.hpp"
-#include "elrom/base/error.hpp"
-#include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/model/composite_models.hpp"
 #include "elrom/study/cross_validation.hpp"
+#include "elrom/study/kernel_method.hpp"
 #include "elrom/study/networks_method.hpp"
+#include "elrom/study/peers.hpp"
 #include "elrom/study/pod_mlp.hpp"
+#include "elrom/study/split.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/torch/trainer.hpp"
+#include "support/benchmark.hpp"
 
 namespace {
 
 using namespace elrom;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
+using Rows = std::vector<std::size_t>;
+using Model = std::shared_ptr<const model::FieldModel>;
 
-struct Options {
-  std::string store = "snapshots.h5", json;
+constexpr std::size_t n_folds = 3;
+
+struct Options : benchmark::Arguments {
   std::vector<std::string> fields, variants;
-  bool small = false, cross = false;
-  int threads = base::available_threads();
+  int source_trials = 10;
 };
 
-/// A method with its symmetric average at prediction.
-class MirrorAveraged final : public study::Method {
- public:
-  explicit MirrorAveraged(std::unique_ptr<study::Method> method) : method_(std::move(method)) {}
-  [[nodiscard]] std::string name() const override { return method_->name(); }
-  [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const study::FieldData& data,
-                                                       std::span<const std::size_t> cases,
-                                                       const study::FitContext& context) const override {
-    const auto& set = *data.cases;
-    return std::make_unique<model::MirrorModel>(
-        method_->fit(data, cases, context),
-        field::symmetry_group(set.mirrors, set.schema.size(), set.mesh.n_cells()), data.info.parity,
-        set.mesh.n_planes);
-  }
-  [[nodiscard]] MatrixF cross_predict(const study::FieldData& data, const study::Folds& folds,
-                                      const study::FitContext& context) const override {
-    return study::cross_predict_by_fitting(*this, data, folds, context, false);
-  }
-
- private:
-  std::unique_ptr<study::Method> method_;
-};
-
-/// One row of the table: how to make its method for a field.
-struct Variant {
+/// One row of the table: a way to read an answer out of a variant's trained models.
+struct Reading {
   std::string name, what;
-  std::function<std::unique_ptr<study::Method>()> make;
+  std::function<Model(const Model&, const study::FieldData&)> read = [](const Model& model, const auto&) {
+    return model;
+  };
 };
+
+/// Models that are trained once and read in one or several ways.
+struct Variant {
+  std::vector<Reading> readings;
+  std::function<std::unique_ptr<study::Method>(const std::string& field)> make;
+  std::string only = "";  ///< the one field it changes anything for
+};
+
+struct Outcome {
+  double cross = 0, held_out = 0, seconds = 0;
+};
+
+Model average_of(const Model& model, const study::FieldData& data) {
+  const auto& set = *data.cases;
+  return std::make_shared<model::MirrorModel>(
+      model, field::symmetry_group(set.mirrors, set.schema.size(), set.mesh.n_cells()), data.info.parity,
+      set.mesh.n_planes);
+}
+
+Model best_build_of(const Model& model, const study::FieldData&) {
+  auto parts = dynamic_cast<const model::BandedNetworks&>(*model).parts();
+  parts.combination = model::Combination::best;
+  return std::make_shared<model::BandedNetworks>(std::move(parts));
+}
 
 class Workbench {
  public:
   explicit Workbench(const Options& options)
-      : options_(options), trainer_(elrom::torch::make_torch_trainer()) {}
+      : options_(options),
+        trainer_(elrom::torch::make_torch_trainer()),
+        store_(field::SnapshotStore::open(options.store)) {
+    const auto used = settings({});
+    std::vector<std::string> names;
+    for (const auto& record : store_.cases()) names.push_back(record.inputs.name);
+    const auto held = study::hold_out(names, used.split.held_out);
+    // Repeated runs judge noise, not skill: held out, but not judged.
+    Rows rows = held.building;
+    for (const std::size_t row : held.held_out)
+      if (!base::matches(names[row], "rep*")) rows.push_back(row);
+    cases_ = study::study_cases(store_, used, rows, silent_log());
+    rows_ = rows;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      (i < held.building.size() ? building_ : judged_).push_back(i);
+    for (const auto& info : store_.fields())
+      if (wanted(info.name)) fields_.push_back(info);
+    columns_.resize(cases_.mesh.n_columns);
+    std::iota(columns_.begin(), columns_.end(), 0);
+  }
+
+  void run() {
+    fmt::print("{:<16} {:>8} {:>9} {:>9}  {}\n", "option", "cross", "held out", "seconds", "what");
+    Json table = Json::array();
+    for (const auto& variant : variants()) {
+      const bool asked =
+          options_.variants.empty() || std::ranges::any_of(variant.readings, [&](const auto& reading) {
+            return std::ranges::count(options_.variants, reading.name) > 0;
+          });
+      if (!asked) continue;
+      for (auto& row : measure(variant)) table.push_back(std::move(row));
+    }
+    if (!options_.json.empty())
+      base::write_text(options_.json, Json{{"program", program_version()},
+                                           {"small", options_.small},
+                                           {"training_cases", building_.size()},
+                                           {"held_out_cases", judged_.size()},
+                                           {"folds", n_folds},
+                                           {"source_trials", options_.source_trials},
+                                           {"options", table}}
+                                              .dump(1) +
+                                          "\n");
+  }
+
+ private:
+  [[nodiscard]] bool wanted(const std::string& field) const {
+    if (!options_.fields.empty()) return std::ranges::count(options_.fields, field) > 0;
+    return !options_.small || field == "pressure" || field == "solid_volume_fraction";
+  }
 
   [[nodiscard]] study::Settings settings(const std::vector<std::string>& changes) const {
-    const int epochs = options_.small ? 8 : 60, trials = options_.small ? 2 : 10;
-    std::vector<std::string> all{"screen.method=\"fast\"",
-                                 "networks.plane_encoding=\"fourier\"",
-                                 "networks.transform={}",
-                                 "networks.targets=\"column\"",
-                                 "networks.mirrors=false",
-                                 "networks.relevance=\"none\"",
-                                 "fit.combine=\"mean\"",
-                                 fmt::format("fit.max_epochs={}", epochs),
-                                 fmt::format("fit.builds={}", options_.small ? 2 : 5),
-                                 "fit.patience=12",
-                                 fmt::format("search.max_epochs={}", std::max(9, epochs / 2)),
-                                 fmt::format("search.trials={}", trials),
-                                 "search.confirm=2",
-                                 "search.confirm_seeds=2"};
+    const int epochs = options_.small ? 8 : 60;
+    std::vector<std::string> all{
+        "networks.plane_encoding=\"fourier\"",
+        "networks.transform={}",
+        "networks.targets=\"column\"",
+        "networks.mirrors=false",
+        "networks.average=false",
+        "networks.relevance=\"none\"",
+        "fit.combine=\"mean\"",
+        fmt::format("fit.max_epochs={}", epochs),
+        fmt::format("fit.builds={}", options_.small ? 2 : 5),
+        "fit.patience=8",
+        fmt::format("search.max_epochs={}", std::max(9, epochs / 2)),
+        fmt::format("search.trials={}", options_.small ? 2 : options_.source_trials)};
     all.insert(all.end(), changes.begin(), changes.end());
     return study::read_settings({}, all);
   }
 
-  /// Networks of fixed hyperparameters on all columns together: nothing but the setting differs between
-  /// variants.
-  [[nodiscard]] std::function<std::unique_ptr<study::Method>()> networks(
-      std::vector<std::string> changes, std::function<void(study::Hyperparameters&)> tune = {},
-      bool average = false) const {
-    return [this, changes, tune, average]() -> std::unique_ptr<study::Method> {
+  /// Networks of fixed hyperparameters, those that searches end near, on all columns together: nothing but
+  /// the setting differs between rows.
+  [[nodiscard]] auto networks(std::vector<std::string> changes,
+                              std::function<void(study::Hyperparameters&)> tune = {}) const {
+    return [this, changes, tune](const std::string& field) -> std::unique_ptr<study::Method> {
       auto method = std::make_unique<study::NetworksMethod>(settings(changes), trainer_);
       study::NetworkPlan plan;
       plan.bands = {{.name = "all", .columns = columns_, .mask = {}}};
-      study::Hyperparameters h{.learning_rate = 1e-3, .n_layers = 2, .n_units = 64, .batch_size = 64};
+      study::Hyperparameters h{.learning_rate = 2.5e-3, .n_layers = 2, .n_units = 64, .batch_size = 64};
       if (tune) tune(h);
       plan.hyperparameters = {h};
-      for (const auto& field : fields_) method->keep_plan(field, plan);
-      if (average) return std::make_unique<MirrorAveraged>(std::move(method));
+      method->keep_plan(field, plan);
       return method;
     };
   }
 
-  [[nodiscard]] std::function<std::unique_ptr<study::Method>()> pod(
-      const std::function<void(study::PodMlpOptions&)>& change = {}, bool average = false) const {
-    return [this, change, average]() -> std::unique_ptr<study::Method> {
+  [[nodiscard]] auto pod(const std::function<void(study::PodMlpOptions&)>& change = {}) const {
+    return [this, change](const std::string&) {
       study::PodMlpOptions options;
       if (options_.small) options.budget.max_epochs = 60;
       if (change) change(options);
-      auto method = study::make_pod_mlp(trainer_, options);
-      if (average) return std::make_unique<MirrorAveraged>(std::move(method));
+      return study::make_pod_mlp(trainer_, options);
+    };
+  }
+
+  /// Screened by a network a column, banded, searched, bare plane index, no mirror images.
+  [[nodiscard]] auto source() const {
+    return [this](const std::string& field) -> std::unique_ptr<study::Method> {
+      auto method = std::make_unique<study::NetworksMethod>(
+          settings({"networks.plane_encoding=\"index\"", "fit.combine=\"best\"",
+                    fmt::format("screen.max_epochs={}", options_.small ? 6 : 60)}),
+          trainer_);
+      method->keep_plan(field, method->plan(data_, building_, context()));
       return method;
     };
   }
 
   [[nodiscard]] std::vector<Variant> variants() const {
-    const std::vector<std::string> mirrors{"networks.mirrors=true"};
+    using H = study::Hyperparameters;
+    const auto decay = [](H& h) { h.weight_decay = 0.1; };
+    const auto log = networks({"networks.transform={solid_volume_fraction=\"log\"}"});
+    const auto asinh = networks({"networks.transform={solid_volume_fraction=\"asinh\"}"});
+    const std::string fraction = "solid_volume_fraction";
     return {
-        {"reference", "2 x 64, Fourier planes, mean of the builds", networks({})},
-        {"index", "bare plane index", networks({"networks.plane_encoding=\"index\""})},
-        {"one_hot", "one input a plane", networks({"networks.plane_encoding=\"one_hot\""})},
-        {"best", "best build instead of the mean", networks({"fit.combine=\"best\""})},
-        {"log", "log transform of the volume fraction",
-         networks({"networks.transform={solid_volume_fraction=\"log\"}"})},
-        {"asinh", "asinh transform of the volume fraction",
-         networks({"networks.transform={solid_volume_fraction=\"asinh\"}"})},
-        {"cell", "targets standardised cell by cell", networks({"networks.targets=\"cell\""})},
-        {"relevance", "inputs scaled by a ridge fit", networks({"networks.relevance=\"linear\""})},
-        {"decay", "weight decay 0.1", networks({}, [](auto& h) { h.weight_decay = 0.1; })},
-        {"dropout", "dropout 0.1", networks({}, [](auto& h) { h.dropout = 0.1; })},
-        {"mirrors", "trained on mirror images too", networks(mirrors)},
-        {"mirrors_average", "and averaged over them at prediction", networks(mirrors, {}, true)},
-        {"average", "averaged over mirror images at prediction only", networks({}, {}, true)},
-        {"all_on", "mirrors, average, cell targets, relevance, decay",
-         networks(
-             {"networks.mirrors=true", "networks.targets=\"cell\"", "networks.relevance=\"linear\""},
-             [](auto& h) { h.weight_decay = 0.1; }, true)},
-        {"pod_mlp", "networks on 15 POD coefficients, mean of five", pod()},
-        {"pod_mlp_unit", "the same, coefficients of unit variance", pod([](auto& o) { o.equalise = 1; })},
-        {"pod_mlp_plain", "the same, coefficients of one scale", pod([](auto& o) { o.equalise = 0; })},
-        {"pod_mlp_mirrors", "the same, with mirror images and their average",
-         pod([](auto& o) { o.mirrors = true; }, true)},
-        {"source", "the source's method as written: screened, banded, searched, bare index, best build",
-         [this] {
-           return std::make_unique<study::NetworksMethod>(
-               settings({"networks.plane_encoding=\"index\"", "fit.combine=\"best\"",
-                         "screen.method=\"networks\"",
-                         fmt::format("screen.max_epochs={}", options_.small ? 6 : 40)}),
-               trainer_);
-         }},
+        {{{"reference", "2 x 64, Fourier planes, mean of the builds"},
+          {"best", "best build instead of the mean", best_build_of},
+          {"average", "averaged over mirror images at prediction", average_of}},
+         networks({})},
+        {{{"index", "bare plane index"}}, networks({"networks.plane_encoding=\"index\""})},
+        {{{"one_hot", "one input a plane"}}, networks({"networks.plane_encoding=\"one_hot\""})},
+        {{{"log", "log transform of the volume fraction"}}, log, fraction},
+        {{{"asinh", "asinh transform of the volume fraction"}}, asinh, fraction},
+        {{{"cell", "targets standardised cell by cell"}}, networks({"networks.targets=\"cell\""})},
+        {{{"relevance", "inputs scaled by a ridge fit"}}, networks({"networks.relevance=\"linear\""})},
+        {{{"relevance_gp", "inputs scaled by a process's length scales"}},
+         networks({"networks.relevance=\"gp\""})},
+        {{{"decay", "weight decay 0.1"}}, networks({}, decay)},
+        {{{"dropout", "dropout 0.1"}}, networks({}, [](H& h) { h.dropout = 0.1; })},
+        {{{"mirrors", "trained on mirror images too"},
+          {"mirrors_average", "and averaged over them at prediction", average_of}},
+         networks({"networks.mirrors=true"})},
+        {{{"pod_mlp", "networks on 15 POD coefficients, mean of five"}}, pod()},
+        {{{"pod_mlp_unit", "the same, coefficients of unit variance"}}, pod([](auto& o) { o.equalise = 1; })},
+        {{{"pod_mlp_plain", "the same, coefficients of one scale"}}, pod([](auto& o) { o.equalise = 0; })},
+        {{{"pod_mlp_mirrors", "trained on mirror images too"},
+          {"pod_mlp_average", "and averaged over them at prediction", average_of}},
+         pod([](auto& o) { o.mirrors = true; })},
+        {{{"source",
+           fmt::format("the source's method as written, {} trials a submodel", options_.source_trials)}},
+         source()},
+        {{{"kernel", "kernel smoother"}}, [](const std::string&) { return study::make_kernel_method(); }},
+        {{{"pod_rbf", "POD + RBF"}}, [](const std::string&) { return study::make_peer("pod_rbf"); }},
     };
   }
 
-  void run() {
-    const auto store = field::SnapshotStore::open(options_.store);
-    const auto settings_used = settings({});
-    std::vector<std::string> names;
-    for (const auto& record : store.cases()) names.push_back(record.inputs.name);
-    const auto held = study::hold_out(names, settings_used.split.held_out);
-    // Repeated runs judge noise, not skill: held out, but not judged.
-    std::vector<std::size_t> judged;
-    for (const std::size_t row : held.held_out)
-      if (!base::matches(names[row], "rep*")) judged.push_back(row);
-    building_ = study::study_cases(store, settings_used, held.building, silent_log());
-    judged_ = study::study_cases(store, settings_used, judged, silent_log());
-    for (const auto& info : store.fields()) fields_.push_back(info.name);
-    if (!options_.fields.empty()) fields_ = options_.fields;
-    if (options_.small && options_.fields.empty()) fields_ = {"pressure", "solid_volume_fraction"};
-    columns_.resize(store.mesh().n_columns);
-    std::iota(columns_.begin(), columns_.end(), 0);
-    print_header();
-    Json rows = Json::array();
-    for (const auto& variant : variants())
-      if (options_.variants.empty() || std::ranges::count(options_.variants, variant.name) > 0)
-        rows.push_back(measure(variant, store, held.building, judged));
-    if (!options_.json.empty())
-      base::write_text(
-          options_.json,
-          Json{{"judged", options_.cross ? "cross-validation" : "held-out"}, {"variants", rows}}.dump(2) +
-              "\n");
-  }
-
- private:
-  void print_header() const {
-    fmt::print("{:<16} {:>8} {:>9}  {}\n", "variant", "NRMSE", "seconds", base::join(fields_, " "));
-  }
-
-  Json measure(const Variant& variant, const field::SnapshotStore& store,
-               const std::vector<std::size_t>& building, const std::vector<std::size_t>& judged) const {
-    Json row{{"name", variant.name}, {"what", variant.what}, {"fields", Json::object()}};
-    double sum = 0, seconds = 0;
-    std::string details;
-    for (const auto& name : fields_) {
-      const study::FieldData data{&building_, info_of(store, name), store.read(name, building)};
-      const auto begin = std::chrono::steady_clock::now();
-      const auto method = variant.make();
-      const double error = options_.cross ? cross_error(*method, data)
-                                          : held_out_error(*method, data, store.read(name, judged));
-      seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      row["fields"][name] = error;
-      sum += error;
-      details += fmt::format(" {:.3f}", error);
+  std::vector<Json> measure(const Variant& variant) {
+    std::vector<std::map<std::string, Outcome>> outcomes(variant.readings.size());
+    for (const auto& info : fields_) {
+      if (!variant.only.empty() && variant.only != info.name) continue;
+      data_ = {&cases_, info, store_.read(info.name, rows_)};
+      const auto of_field = measure_field(variant);
+      for (std::size_t r = 0; r < of_field.size(); ++r) outcomes[r][info.name] = of_field[r];
     }
-    row["error"] = sum / static_cast<double>(fields_.size());
-    row["train_seconds"] = seconds;
-    fmt::print("{:<16} {:>8.4f} {:>9.1f} {}\n", variant.name, row["error"].get<double>(), seconds, details);
-    std::fflush(stdout);
-    return row;
+    std::vector<Json> rows;
+    for (std::size_t r = 0; r < outcomes.size(); ++r)
+      rows.push_back(report(variant.readings[r], outcomes[r]));
+    return rows;
   }
 
-  [[nodiscard]] static field::FieldInfo info_of(const field::SnapshotStore& store, const std::string& name) {
-    for (const auto& info : store.fields())
-      if (info.name == name) return info;
-    throw UsageError({.what = "unknown field", .found = name});
+  [[nodiscard]] std::vector<Outcome> measure_field(const Variant& variant) const {
+    std::vector<Outcome> outcomes(variant.readings.size());
+    std::vector<double> squares(variant.readings.size(), 0.0);
+    const benchmark::Stopwatch watch;
+    const auto method = variant.make(data_.info.name);
+    const Model whole = method->fit(data_, building_, context());
+    for (auto& outcome : outcomes) outcome.seconds = watch.seconds();
+    for (std::size_t r = 0; r < outcomes.size(); ++r)
+      outcomes[r].held_out =
+          std::sqrt(squared_error(*variant.readings[r].read(whole, data_), judged_) / departure(judged_));
+    const auto folds = study::load_grouped_folds(cases_.loads, building_, n_folds);
+    for (std::size_t k = 0; k < folds.size(); ++k) {
+      const Model model = method->fit(data_, study::rows_without(folds, k), context());
+      for (std::size_t r = 0; r < squares.size(); ++r)
+        squares[r] += squared_error(*variant.readings[r].read(model, data_), folds[k]);
+    }
+    for (std::size_t r = 0; r < squares.size(); ++r)
+      outcomes[r].cross = std::sqrt(squares[r] / departure(building_));
+    return outcomes;
+  }
+
+  /// Fields that the option leaves as they are count as in the reference.
+  Json report(const Reading& reading, std::map<std::string, Outcome> outcomes) {
+    if (reading.name == "reference") reference_ = outcomes;
+    outcomes.insert(reference_.begin(), reference_.end());
+    Outcome mean;
+    Json fields = Json::object();
+    for (const auto& [name, outcome] : outcomes) {
+      const auto n = static_cast<double>(outcomes.size());
+      mean.cross += outcome.cross / n;
+      mean.held_out += outcome.held_out / n;
+      mean.seconds += outcome.seconds;
+      fields[name] = {{"cross", outcome.cross}, {"held_out", outcome.held_out}};
+    }
+    fmt::print("{:<16} {:>8.4f} {:>9.4f} {:>9.1f}  {}\n", reading.name, mean.cross, mean.held_out,
+               mean.seconds, reading.what);
+    std::fflush(stdout);
+    return {{"name", reading.name},      {"what", reading.what},          {"cross", mean.cross},
+            {"held_out", mean.held_out}, {"train_seconds", mean.seconds}, {"fields", fields}};
   }
 
   [[nodiscard]] study::FitContext context() const {
     return {.seed = base::Seed(1), .n_threads = options_.threads, .stop = base::interrupt_token()};
   }
 
-  [[nodiscard]] static double relative_error(const MatrixF& truth, const MatrixF& predicted,
-                                             const Eigen::RowVectorXf& mean) {
-    return std::sqrt((truth - predicted).cast<double>().squaredNorm() /
-                     (truth.rowwise() - mean).cast<double>().squaredNorm());
+  /// Sum over cases and cells of the squares.
+  [[nodiscard]] double squared_error(const model::FieldModel& model, const Rows& rows) const {
+    std::vector<double> squares(rows.size());
+    base::parallel_for(rows.size(), options_.threads, [&](std::size_t i, int) {
+      const auto row = static_cast<Eigen::Index>(rows[i]);
+      Eigen::RowVectorXf values(data_.values.cols());
+      model::Workspace workspace;
+      study::predict_case(model, {cases_.inputs.row(row).data(), cases_.schema.size()}, cases_.mesh.n_planes,
+                          {values.data(), static_cast<std::size_t>(values.size())}, workspace);
+      squares[i] = (data_.values.row(row) - values).cast<double>().squaredNorm();
+    });
+    return std::accumulate(squares.begin(), squares.end(), 0.0);
   }
-
-  [[nodiscard]] double held_out_error(const study::Method& method, const study::FieldData& data,
-                                      const MatrixF& truth) const {
-    std::vector<std::size_t> all(data.cases->n_cases());
-    std::iota(all.begin(), all.end(), 0);
-    const auto model = method.fit(data, all, context());
-    MatrixF predicted(truth.rows(), truth.cols());
-    model::Workspace workspace;
-    for (Eigen::Index i = 0; i < truth.rows(); ++i)
-      study::predict_case(*model, {judged_.inputs.row(i).data(), judged_.schema.size()},
-                          judged_.mesh.n_planes,
-                          {predicted.row(i).data(), static_cast<std::size_t>(predicted.cols())}, workspace);
-    return relative_error(truth, predicted, data.values.colwise().mean());
-  }
-
-  [[nodiscard]] double cross_error(const study::Method& method, const study::FieldData& data) const {
-    std::vector<std::size_t> all(data.cases->n_cases());
-    std::iota(all.begin(), all.end(), 0);
-    const auto folds = study::load_grouped_folds(data.cases->loads, all, 5);
-    return relative_error(data.values, method.cross_predict(data, folds, context()),
-                          data.values.colwise().mean());
+  [[nodiscard]] double departure(const Rows& rows) const {
+    Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(data_.values.cols());
+    for (const auto row : building_) mean += data_.values.row(static_cast<Eigen::Index>(row)).cast<double>();
+    mean /= static_cast<double>(building_.size());
+    double sum = 0;
+    for (const auto row : rows)
+      sum += (data_.values.row(static_cast<Eigen::Index>(row)).cast<double>() - mean).squaredNorm();
+    return sum;
   }
 
   const Options& options_;
   std::shared_ptr<const study::Trainer> trainer_;
-  study::CaseSet building_, judged_;
-  std::vector<std::string> fields_;
+  field::SnapshotStore store_;
+  study::CaseSet cases_;    // training cases, then the held-out ones
+  Rows rows_;               // of the store, in the order of cases_
+  Rows building_, judged_;  // of cases_
+  std::vector<field::FieldInfo> fields_;
   std::vector<std::int32_t> columns_;
+  study::FieldData data_;  // the field at work
+  std::map<std::string, Outcome> reference_;
 };
 
 }  // namespace
@@ -268,14 +319,14 @@ int main(int argc, char** argv) {
   return base::run_app("bench-ablation", [&] {
     Options options;
     CLI::App app("Error and training time of the networks' options on real cases, one switched at a time");
-    app.add_option("--store", options.store, "snapshot store")->capture_default_str();
+    options.add_to(app, "snapshot store");
+    app.get_option("--store")->required();
     app.add_option("--fields", options.fields, "fields, separated by commas [default: all]")->delimiter(',');
-    app.add_option("--variants", options.variants, "rows of the table, separated by commas [default: all]")
+    app.add_option("--options", options.variants, "rows of the table, separated by commas [default: all]")
         ->delimiter(',');
-    app.add_flag("--cross", options.cross, "judge by cross-validation on the training cases");
-    app.add_flag("--small", options.small, "two fields and tiny budgets: ends within a minute");
-    app.add_option("--threads", options.threads, "processor threads")->capture_default_str();
-    app.add_option("--json", options.json, "write the figures to this file");
+    app.add_option("--source-trials", options.source_trials,
+                   "of the search in the source's method (it has 50)")
+        ->capture_default_str();
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -56,6 +56,45 @@ TEST(Uncertainty, ScaleIsTheRootMeanSquareOfResiduals) {
   EXPECT_FLOAT_EQ(scale[1], 1.0F);
 }
 
+TEST(Uncertainty, FollowsTheSizeThatInputsLetExpect) {
+  // Errors grow tenfold with the first input; the second one is of no concern.
+  constexpr Eigen::Index n_cases = 60, n_cells = 200;
+  base::Random random{base::Seed(3)};
+  const auto draw = [&](MatrixF& residuals, MatrixD& inputs) {
+    for (Eigen::Index i = 0; i < n_cases; ++i) {
+      inputs.row(i) << random.uniform(100, 200), random.uniform(-1, 1);
+      const double size = std::pow(10.0, (inputs(i, 0) - 100) / 100);
+      for (Eigen::Index c = 0; c < n_cells; ++c) residuals(i, c) = static_cast<float>(size * random.normal());
+    }
+  };
+  MatrixF residuals(n_cases, n_cells), fresh(n_cases, n_cells);
+  MatrixD inputs(n_cases, 2), asked(n_cases, 2);
+  draw(residuals, inputs);
+  draw(fresh, asked);
+  const Uncertainty uncertainty(residuals, n_cells, inputs);
+  std::vector<float> scale(n_cells);
+  uncertainty.scale(std::vector<std::int32_t>{0}, scale);
+
+  for (Eigen::Index i = 0; i < n_cases; ++i) {
+    const double width = uncertainty.quantile(0.8) * uncertainty.factor({asked.row(i).data(), 2});
+    double covered = 0;
+    for (Eigen::Index c = 0; c < n_cells; ++c)
+      covered += std::abs(fresh(i, c)) <= width * scale[static_cast<std::size_t>(c)] ? 1.0 / n_cells : 0;
+    EXPECT_NEAR(covered, 0.8, 0.13) << asked(i, 0);  // four standard errors of 200 cells, and the fit's own
+  }
+  const std::vector<double> far{1e6, 0}, largest{200, 0};
+  EXPECT_LE(uncertainty.factor(far), 1.1 * uncertainty.factor(largest));
+}
+
+TEST(Uncertainty, HasOneSizeForAllCasesWhereInputsSayNothing) {
+  MatrixD inputs(60, 3);
+  base::Random random{base::Seed(4)};
+  for (Eigen::Index i = 0; i < inputs.size(); ++i) inputs.data()[i] = random.normal();
+  const Uncertainty uncertainty(normal_residuals(60, 300, 5), 300, inputs);
+
+  for (Eigen::Index i = 0; i < 60; ++i) EXPECT_NEAR(uncertainty.factor({inputs.row(i).data(), 3}), 1, 0.08);
+}
+
 TEST(Uncertainty, RefusesALevelThatTheCasesCannotPromise) {
   const Uncertainty uncertainty(normal_residuals(9, 20, 1), 20);
 
@@ -66,7 +105,9 @@ TEST(Uncertainty, RefusesALevelThatTheCasesCannotPromise) {
 }
 
 TEST(Uncertainty, IsTheSameAfterSaveAndLoad) {
-  const Uncertainty written(normal_residuals(20, 12, 1), 4);
+  MatrixD inputs(20, 1);
+  for (Eigen::Index i = 0; i < 20; ++i) inputs(i, 0) = std::sin(static_cast<double>(i));
+  const Uncertainty written(normal_residuals(20, 12, 1), 4, inputs);
   io::TensorFile file;
   written.save(file, "u");
 
@@ -74,6 +115,8 @@ TEST(Uncertainty, IsTheSameAfterSaveAndLoad) {
 
   EXPECT_EQ(read.n_cases(), 20U);
   EXPECT_EQ(read.quantile(0.87), written.quantile(0.87));
+  const std::vector<double> asked{0.4};
+  EXPECT_EQ(read.factor(asked), written.factor(asked));
 }
 
 }  // namespace

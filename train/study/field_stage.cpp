@@ -58,7 +58,8 @@ io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& co
                        : fit_alone(request, rows, context);
   io::TensorFile file;
   if (fit.residuals.size() > 0) {
-    model::Uncertainty(fit.residuals, data.cases->mesh.n_columns).save(file, "uncertainty");
+    model::Uncertainty(fit.residuals, data.cases->mesh.n_columns, data.cases->inputs)
+        .save(file, "uncertainty");
     file.set_text("has_uncertainty", "yes");
   }
   fit.model->save(file, "model");

@@ -7,6 +7,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/model/composite_models.hpp"
 #include "elrom/study/cross_validation.hpp"
 #include "elrom/study/search.hpp"
 #include "elrom/study/split.hpp"
@@ -90,7 +91,9 @@ RecordOptions NetworksMethod::record_options(const std::string& field) const {
               transform == settings_.networks.transform.end() ? "none" : transform->second),
           .scale_cells = settings_.networks.targets == "cell",
           .mirrors = settings_.networks.mirrors && settings_.symmetry.enabled,
-          .linear_relevance = settings_.networks.relevance == "linear"};
+          .relevance = settings_.networks.relevance == "linear" ? Relevance::linear
+                       : settings_.networks.relevance == "gp"   ? Relevance::gp
+                                                                : Relevance::none};
 }
 
 void NetworksMethod::keep_plan(const std::string& field, NetworkPlan plan) { kept_[field] = std::move(plan); }
@@ -226,7 +229,12 @@ std::unique_ptr<model::FieldModel> NetworksMethod::assemble(const FieldData& dat
       .outputs = std::move(set.outputs),
       .submodels = std::move(submodels),
       .combination = settings_.fit.combine == "best" ? model::Combination::best : model::Combination::mean};
-  return std::make_unique<model::BandedNetworks>(std::move(parts));
+  auto networks = std::make_unique<model::BandedNetworks>(std::move(parts));
+  const auto& shared = *data.cases;
+  if (!settings_.networks.average || !settings_.symmetry.enabled || shared.mirrors.empty()) return networks;
+  const auto group = field::symmetry_group(shared.mirrors, shared.schema.size(), shared.mesh.n_cells());
+  return std::make_unique<model::MirrorModel>(std::move(networks), group, data.info.parity,
+                                              shared.mesh.n_planes);
 }
 
 std::unique_ptr<model::FieldModel> NetworksMethod::fit(const FieldData& data,

@@ -6,6 +6,7 @@
 
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/math/gaussian_process.hpp"
 #include "elrom/math/ridge.hpp"
 #include "elrom/math/standardiser.hpp"
 
@@ -170,6 +171,43 @@ void fill(const ScreeningData& records, const Band& band, Part part, MatrixF& in
   }
 }
 
+/// The first few, with the square root of their energy as length, (n_cases, n_components).
+Eigen::MatrixXd principal_components(const MatrixF& values) {
+  const Eigen::MatrixXd centred = (values.rowwise() - values.colwise().mean()).cast<double>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centred * centred.transpose());
+  const auto n = std::min(n_components, centred.rows());
+  return solver.eigenvectors().rightCols(n) *
+         solver.eigenvalues().tail(n).cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+/// 1 for the strongest input, at least `least_relevance`.
+std::vector<double> relative_relevance(std::vector<double> relevance) {
+  const double most = *std::ranges::max_element(relevance);
+  for (auto& value : relevance) value = most > 0 ? std::max(value / most, least_relevance) : 1;
+  return relevance;
+}
+
+std::vector<double> ridge_relevance(const MatrixD& inputs, const Eigen::MatrixXd& components) {
+  const std::vector<double> penalties{0.1, 1, 10, 100, 1000};
+  const auto ridge = math::fit_ridge(inputs, components, penalties);
+  std::vector<double> relevance;
+  for (Eigen::Index i = 0; i < ridge.weights.rows(); ++i)
+    relevance.push_back(std::sqrt(ridge.weights.row(i).norm()));
+  return relative_relevance(std::move(relevance));
+}
+
+/// What an input is divided by in the covariance of a process that all components share (ARD).
+std::vector<double> gp_relevance(const MatrixD& inputs, const Eigen::MatrixXd& components) {
+  const Eigen::VectorXd scale =
+      (components.colwise().squaredNorm() / static_cast<double>(components.rows())).cwiseSqrt();
+  const double rounding = 1e-6 * scale.maxCoeff();
+  const auto inverse = scale.unaryExpr([&](double s) { return s > rounding ? 1 / s : 0; });
+  const auto gp = math::fit_gp(inputs, components * inverse.asDiagonal(), {.start_lengths = {5.0}});
+  std::vector<double> relevance;
+  for (const double length : gp.length_scales) relevance.push_back(1 / length);
+  return relative_relevance(std::move(relevance));
+}
+
 }  // namespace
 
 RecordSet make_records(const FieldData& data, std::span<const std::size_t> cases,
@@ -183,8 +221,7 @@ RecordSet make_records(const FieldData& data, std::span<const std::size_t> cases
   {
     const auto values = transformed_rows(data, building, set.transform);
     const auto inputs = input_rows(shared, building);
-    set.inputs = model::InputScaler::fit(
-        inputs, options.linear_relevance ? linear_relevance(inputs, values) : std::vector<double>{});
+    set.inputs = model::InputScaler::fit(inputs, relevance_of(options.relevance, inputs, values));
     set.outputs = model::OutputScaler::fit(values, shared.mesh.n_columns, options.scale_cells);
   }
   set.planes = {.kind = options.encoding, .n_planes = n_planes};
@@ -212,20 +249,12 @@ TrainingProblem make_problem(const ScreeningData& records, const Band& band) {
   return problem;
 }
 
-std::vector<double> linear_relevance(const MatrixD& inputs, const MatrixF& values) {
-  const math::Standardiser standardiser(inputs);
-  const Eigen::MatrixXd centred = (values.rowwise() - values.colwise().mean()).cast<double>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centred * centred.transpose());
-  const auto n = std::min(n_components, centred.rows());
-  const Eigen::MatrixXd components = solver.eigenvectors().rightCols(n) *
-                                     solver.eigenvalues().tail(n).cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  const std::vector<double> penalties{0.1, 1, 10, 100, 1000};
-  const auto ridge = math::fit_ridge(standardiser.apply(inputs), components, penalties);
-  std::vector<double> relevance;
-  for (Eigen::Index i = 0; i < ridge.weights.rows(); ++i) relevance.push_back(ridge.weights.row(i).norm());
-  const double most = *std::ranges::max_element(relevance);
-  for (auto& value : relevance) value = most > 0 ? std::max(std::sqrt(value / most), least_relevance) : 1;
-  return relevance;
+std::vector<double> relevance_of(Relevance kind, const MatrixD& inputs, const MatrixF& values) {
+  if (kind == Relevance::none) return {};
+  const MatrixD standardised = math::Standardiser(inputs).apply(inputs);
+  const Eigen::MatrixXd components = principal_components(values);
+  return kind == Relevance::linear ? ridge_relevance(standardised, components)
+                                   : gp_relevance(standardised, components);
 }
 
 std::string data_digest(const FieldData& data, std::span<const std::size_t> cases) {

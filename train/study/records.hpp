@@ -10,12 +10,16 @@
 
 namespace elrom::study {
 
+/// What scales the inputs beside their standard deviation: nothing, the weights of a ridge fit, or the
+/// inverse length scales of a Gaussian process (ARD).
+enum class Relevance { none, linear, gp };
+
 struct RecordOptions {
   model::PlaneEncodingKind encoding = model::PlaneEncodingKind::index;
   model::TransformKind transform = model::TransformKind::none;
   bool scale_cells = false;  ///< targets standardised cell by cell instead of column by column
   bool mirrors = false;      ///< mirror images of the training records are training records too
-  bool linear_relevance = false;
+  Relevance relevance = Relevance::none;
 };
 
 struct RecordSet {
@@ -34,9 +38,9 @@ struct RecordSet {
 /// out.
 [[nodiscard]] TrainingProblem make_problem(const ScreeningData& records, const Band& band);
 
-/// How much each scaled input moves the field, by a ridge fit of the field's principal components: 1 for the
-/// strongest input, at least 0.1.
-[[nodiscard]] std::vector<double> linear_relevance(const MatrixD& inputs, const MatrixF& values);
+/// How much each standardised input moves the field's principal components: 1 for the strongest input, at
+/// least 0.1; empty for none.
+[[nodiscard]] std::vector<double> relevance_of(Relevance kind, const MatrixD& inputs, const MatrixF& values);
 
 /// SHA-256 over inputs, values, loads and mesh of these cases: what every result of theirs depends on.
 [[nodiscard]] std::string data_digest(const FieldData& data, std::span<const std::size_t> cases);

@@ -282,8 +282,12 @@ std::vector<SettingRow> make_rows() {
       flag(
           "networks.mirrors", "train networks on mirror images too",
           [](S & s) -> auto& { return s.networks.mirrors; }),
-      word("networks.relevance", "scale the inputs by their weight in a ridge fit",
-           [](S & s) -> auto& { return s.networks.relevance; }, {"none", "linear"}),
+      flag(
+          "networks.average", "average what networks answer over mirror images",
+          [](S & s) -> auto& { return s.networks.average; }),
+      word("networks.relevance",
+           "scale the inputs by their weight in a ridge fit, or by a process's length scales",
+           [](S & s) -> auto& { return s.networks.relevance; }, {"none", "linear", "gp"}),
       transforms(),
       words(
           "peers.methods", "fitted beside the model, each to a bundle of its own",

@@ -9,10 +9,11 @@
 namespace elrom::math {
 
 struct Ridge {
-  MatrixD weights;               //!< (n_inputs, n_targets)
-  Eigen::VectorXd intercept;     //!< (n_targets)
-  double penalty = 0;            ///< alpha in |y - x w - b|^2 + alpha |w|^2
-  Eigen::VectorXd loo_variance;  //!< mean squared leave-one-out residual, (n_targets)
+  MatrixD weights;                //!< (n_inputs, n_targets)
+  Eigen::VectorXd intercept;      //!< (n_targets)
+  double penalty = 0;             ///< alpha in |y - x w - b|^2 + alpha |w|^2
+  Eigen::VectorXd loo_variance;   //!< mean squared leave-one-out residual, (n_targets)
+  Eigen::MatrixXd loo_residuals;  //!< truth minus the prediction of a fit without that case, (n, n_targets)
 
   [[nodiscard]] Eigen::MatrixXd predict(const MatrixD& x) const;
 };
