@@ -187,6 +187,7 @@ class Workbench {
     const auto log = networks({"networks.transform={solid_volume_fraction=\"log\"}"});
     const auto asinh = networks({"networks.transform={solid_volume_fraction=\"asinh\"}"});
     const std::string fraction = "solid_volume_fraction";
+    const std::vector<std::string> both{"networks.mirrors=true", "networks.relevance=\"gp\""};
     return {
         {{{"reference", "2 x 64, Fourier planes, mean of the builds"},
           {"best", "best build instead of the mean", best_build_of},
@@ -205,6 +206,13 @@ class Workbench {
         {{{"mirrors", "trained on mirror images too"},
           {"mirrors_average", "and averaged over them at prediction", average_of}},
          networks({"networks.mirrors=true"})},
+        {{{"mirrors_gp", "mirror images and length scales"}}, networks(both)},
+        {{{"all", "mirror images, length scales, weight decay, dropout"}},
+         networks(both,
+                  [](H& h) {
+                    h.weight_decay = 0.1;
+                    h.dropout = 0.1;
+                  })},
         {{{"pod_mlp", "networks on 15 POD coefficients, mean of five"}}, pod()},
         {{{"pod_mlp_unit", "the same, coefficients of unit variance"}}, pod([](auto& o) { o.equalise = 1; })},
         {{{"pod_mlp_plain", "the same, coefficients of one scale"}}, pod([](auto& o) { o.equalise = 0; })},

@@ -103,6 +103,7 @@ RecordSet NetworksMethod::screening_records(const FieldData& data, std::span<con
   auto options = record_options(data.info.name);
   options.encoding = model::PlaneEncodingKind::index;  // the source's input, whatever the submodels get
   options.mirrors = false;
+  options.relevance = Relevance::none;
   return make_records(data, cases, split(data, cases, context), options);
 }
 

@@ -75,8 +75,7 @@ struct NetworkSettings {
   std::string targets = "column";  ///< "column" (eq. 6.1) | "cell": mean and scale of every cell on its own
   bool mirrors = true;   ///< train on mirror images too: about 10 % less error, four times the records
   bool average = false;  ///< average the answers for a case and its mirror images
-  std::string relevance =
-      "none";  ///< "none" | "linear": inputs scaled by a ridge fit | "gp": by length scales
+  std::string relevance = "gp";  ///< inputs scaled by "gp": length scales | "linear": a ridge fit | "none"
   std::map<std::string, std::string> transform;  ///< field -> none (where not named) | log | asinh
 };
 
