@@ -2,8 +2,9 @@
 
 #include <memory>
 
+#include "case_files.hpp"
 #include "commands.hpp"
-#include "elrom/io/hdf5.hpp"
+#include "elrom/base/error.hpp"
 #include "store_summary.hpp"
 
 namespace elrom::ingest {
@@ -14,18 +15,15 @@ nlohmann::ordered_json describe(const std::filesystem::path& path) {
   const auto ending = path.extension();
   if (ending == ".elrom") return describe_bundle(model::BundleReader(path));
   if (ending == ".h5" || ending == ".hdf5" || ending == ".hdf") {
-    std::string kind;
-    {
-      const auto file = io::Hdf5File::open(path);
-      if (file.has_attribute("kind")) kind = file.text("kind");
-    }
+    const auto kind = kind_of(path);
     if (kind == "elrom-snapshots") return describe_store(field::SnapshotStore::open(path));
     if (kind == "elrom-mesh") return describe_mesh(field::read_mesh(path));
+    if (kind == "elrom-prediction") return describe_prediction(path);
     if (!kind.empty())
       throw InputError({.what = "nothing to inspect",
                         .where = path.string(),
                         .found = kind,
-                        .expected = "a store, a mesh, a case or a bundle"});
+                        .expected = "a store, a mesh, a case, a bundle or a prediction"});
   }
   return describe_case(read_case(path));
 }
@@ -38,11 +36,11 @@ void add_inspect(CLI::App& program, Work& chosen) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  auto* command =
-      program.add_subcommand("inspect",
-                             "Say what is in a snapshot store, a reduced mesh, a CFD result or a bundle: "
-                             "cases, loads, inputs, fields, units.");
-  command->add_option("FILE", options->path, "Store, mesh, case or bundle (model.elrom)")
+  auto* command = program.add_subcommand(
+      "inspect",
+      "Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle or a prediction: "
+      "cases, loads, inputs, fields, units.");
+  command->add_option("FILE", options->path, "Store, mesh, case, bundle (model.elrom) or prediction (.hdf)")
       ->required()
       ->type_name("FILE");
   command->add_flag("--json", options->json, "Print JSON");

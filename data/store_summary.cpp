@@ -5,34 +5,13 @@
 #include <numeric>
 
 #include "elrom/base/units.hpp"
+#include "value_range.hpp"
 
 namespace elrom::ingest {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// JSON has no NaN.
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-/// Smallest, largest and mean of values that come in pieces.
-struct Range {
-  double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0;
-  std::size_t n = 0;
-
-  void add(double value) {
-    if (std::isnan(value)) return;
-    least = std::min(least, value);
-    most = std::max(most, value);
-    sum += value;
-    ++n;
-  }
-  [[nodiscard]] Json json() const {
-    return {{"min", number_or_null(least)},
-            {"mean", number_or_null(n > 0 ? sum / static_cast<double>(n) : std::nan(""))},
-            {"max", number_or_null(most)}};
-  }
-};
 
 Json extents(const MatrixD& centre) {
   Json box;

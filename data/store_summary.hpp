@@ -1,6 +1,6 @@
 #pragma once
-// What is in a store, a mesh, a case or a bundle, for `elrom-data inspect`: numbers in the user's units, as
-// text and as JSON.
+// What is in a store, a mesh, a case, a bundle or a prediction, for `elrom-data inspect`: numbers in the
+// user's units, as text and as JSON.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -20,6 +20,12 @@ namespace elrom::ingest {
 /// Keys: kind, method, mesh, inputs, fields [{name, unit, model}], cases (those it was trained on),
 /// provenance, accuracy, digest.
 [[nodiscard]] nlohmann::ordered_json describe_bundle(const model::BundleReader& bundle);
+
+/// Keys: kind, case, load, validity, validity_reason, nearest, method, builds, interval_level (null: not
+/// asked for), n_planes, profiles (true: plane averages), inputs [{name, unit, value}], fields [{name, unit,
+/// min, mean, max}], bundle_digest.
+/// @throws InputError when it is no prediction file, or crashes the HDF5 library
+[[nodiscard]] nlohmann::ordered_json describe_prediction(const std::filesystem::path& path);
 
 /// The same in words, for a terminal.
 [[nodiscard]] std::string in_words(const nlohmann::ordered_json& description);

@@ -40,6 +40,16 @@ std::string range_table(const Json& entries, const char* heading) {
   return text;
 }
 
+std::string value_table(const Json& inputs) {
+  std::string text;
+  if (!inputs.empty()) text = fmt::format("\n{:<30}{:<8}{:>12}\n", "boundary condition", "unit", "value");
+  for (const auto& input : inputs) {
+    text += fmt::format("{:<30}{:<8}{:>12}\n", input["name"].get<std::string>(),
+                        input["unit"].get<std::string>(), shown(input["value"], 6));
+  }
+  return text;
+}
+
 std::string store_words(const Json& store) {
   const auto n = store["n_cases"].get<std::size_t>();
   std::string text =
@@ -64,12 +74,7 @@ std::string case_words(const Json& one) {
       fmt::format("case {}: load {}, averaged over {} s, {} cells\n  cell centres: x {} m, y {} m, z {} m\n",
                   one["name"].get<std::string>(), percent(one["load"]), shown(one["averaging_window_s"]),
                   one["n_cells"].get<std::size_t>(), side("x"), side("y"), side("z"));
-  if (!one["inputs"].empty())
-    text += fmt::format("\n{:<30}{:<8}{:>12}\n", "boundary condition", "unit", "value");
-  for (const auto& input : one["inputs"]) {
-    text += fmt::format("{:<30}{:<8}{:>12}\n", input["name"].get<std::string>(),
-                        input["unit"].get<std::string>(), shown(input["value"], 6));
-  }
+  text += value_table(one["inputs"]);
   return text + range_table(one["fields"], "field") + "digest " + one["digest"].get<std::string>() + "\n";
 }
 
@@ -94,6 +99,20 @@ std::string bundle_words(const Json& bundle) {
   return text + "digest " + bundle["digest"].get<std::string>() + "\n";
 }
 
+std::string prediction_words(const Json& one) {
+  std::string text = fmt::format(
+      "prediction of case {}: load {}, {} planes{}\n", one["case"].get<std::string>(), percent(one["load"]),
+      one["n_planes"].get<std::size_t>(), one["profiles"].get<bool>() ? ", averages of each" : "");
+  text += fmt::format("validity: {} ({})\n", one["validity"].get<std::string>(),
+                      one["validity_reason"].get<std::string>());
+  text += fmt::format("model of method '{}', {} of the builds, by {}\n", one["method"].get<std::string>(),
+                      one["builds"].get<std::string>(), one["bundle_program"].get<std::string>());
+  if (one["interval_level"].is_number())
+    text += "with intervals of level " + shown(one["interval_level"]) + "\n";
+  text += value_table(one["inputs"]) + range_table(one["fields"], "field");
+  return text + "bundle digest " + one["bundle_digest"].get<std::string>() + "\n";
+}
+
 }  // namespace
 
 std::string in_words(const Json& description) {
@@ -101,6 +120,7 @@ std::string in_words(const Json& description) {
   if (kind == "store") return store_words(description);
   if (kind == "mesh") return "reduced mesh: " + mesh_words(description);
   if (kind == "bundle") return bundle_words(description);
+  if (kind == "prediction") return prediction_words(description);
   return case_words(description);
 }
 

@@ -34,6 +34,7 @@ class ConsoleLog final : public Log {
   }
 
   void progress(const Progress& progress) override {
+    if (lowest_ > Level::info) return;
     const std::scoped_lock lock(mutex_);
     const auto now = Clock::now();
     const auto [entry, is_new] = tasks_.try_emplace(progress.task, Task{now, now});

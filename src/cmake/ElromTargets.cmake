@@ -9,17 +9,22 @@ endif()
 
 function(elrom_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
-                         # GCC 12 false alarms: in std::string (its bug 105329) ...
-                         -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds
-                         # ... and in its AVX-512 intrinsics, through Eigen (its bug 105593)
-                         -Wno-maybe-uninitialized -Wno-uninitialized)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(${target} PRIVATE
+                           # GCC 12 false alarms: in std::string (its bug 105329) ...
+                           -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds
+                           # ... and in its AVX-512 intrinsics, through Eigen (its bug 105593)
+                           -Wno-maybe-uninitialized -Wno-uninitialized)
+  endif()
   if(ELROM_NATIVE)
     # Public: Eigen's alignment follows the instruction set, and must be the same in every object of a program.
     target_compile_options(${target} PUBLIC $<BUILD_INTERFACE:-march=native>)
   endif()
   if(ELROM_SANITIZE)
-    target_compile_options(${target} PUBLIC $<BUILD_INTERFACE:-fsanitize=${ELROM_SANITIZE}> $<BUILD_INTERFACE:-fno-omit-frame-pointer>)
+    # What a sanitizer finds ends the program: a message nobody reads is no finding.
+    target_compile_options(${target} PUBLIC $<BUILD_INTERFACE:-fsanitize=${ELROM_SANITIZE}> $<BUILD_INTERFACE:-fno-omit-frame-pointer>
+                           $<BUILD_INTERFACE:-fno-sanitize-recover=all>)
     target_link_options(${target} PUBLIC $<BUILD_INTERFACE:-fsanitize=${ELROM_SANITIZE}>)
   endif()
 endfunction()

@@ -88,9 +88,13 @@ void write_mesh(const io::Hdf5Group& group, const Mesh& mesh) {
 }
 
 Mesh read_mesh(const std::filesystem::path& path) {
-  const auto file = io::Hdf5File::open(path);
-  io::check_kind(file, "elrom-mesh", mesh_format);
-  return read_mesh(file.group("mesh"));
+  const auto read = [&] {
+    const auto file = io::Hdf5File::open(path);
+    io::check_kind(file, "elrom-mesh", mesh_format);
+    return read_mesh(file.group("mesh"));
+  };
+  io::survive(path, "mesh", [&] { static_cast<void>(read()); });
+  return read();
 }
 
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {

@@ -24,6 +24,16 @@ SnapshotStore& SnapshotStore::operator=(SnapshotStore&&) noexcept = default;
 SnapshotStore::~SnapshotStore() = default;
 
 SnapshotStore SnapshotStore::open(const std::filesystem::path& path) {
+  io::survive(path, "store", [&] {
+    const auto store = open_here(path);
+    for (std::size_t i = 0; i < store.n_cases(); ++i) {  // one at a time: stores are larger than memory
+      for (const auto& field : store.fields()) static_cast<void>(store.read(field.name, {&i, 1}));
+    }
+  });
+  return open_here(path);
+}
+
+SnapshotStore SnapshotStore::open_here(const std::filesystem::path& path) {
   auto file = io::Hdf5File::open(path);
   io::check_kind(file, detail::store_kind, detail::store_format);
   auto impl = std::make_unique<Impl>(Impl{.path = path, .file = std::move(file)});

@@ -13,6 +13,10 @@ namespace {
 
 /// Planes of one pass: 66 planes of the furnace are one pass, and a pass's activations stay in cache.
 constexpr std::size_t block_rows = 5 * lane;
+/// Values of the table of encoded planes: a thousand planes one-hot. No furnace has more; a hostile file may
+/// say so.
+constexpr std::size_t most_encodings = 1'000'000;
+
 void require(bool fits, const std::string& what, const std::string& found, const std::string& expected) {
   if (!fits) throw InputError({"parts of a networks model do not fit", what, found, expected});
 }
@@ -90,6 +94,10 @@ BandedNetworks::BandedNetworks(Parts parts) : parts_(std::move(parts)) {
   require(scaled && (rows == 1 || rows == parts_.planes.n_planes), "output scaler",
           std::to_string(rows) + " x " + std::to_string(parts_.outputs.mean.cols()),
           "1 or " + std::to_string(parts_.planes.n_planes) + " x " + std::to_string(parts_.n_columns));
+  require(parts_.planes.n_planes <= most_encodings / parts_.planes.size(), "plane encoding",
+          std::to_string(parts_.planes.n_planes) + " planes x " + std::to_string(parts_.planes.size()) +
+              " inputs",
+          "at most " + std::to_string(most_encodings) + " values");
   for (const auto& submodel : parts_.submodels) check_submodel(submodel, parts_);
   check_cover(parts_);
   encodings_.resize(static_cast<Eigen::Index>(parts_.planes.n_planes),

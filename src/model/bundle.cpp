@@ -51,6 +51,13 @@ BundleReader::BundleReader(const std::filesystem::path& path, io::Verify verify)
   n_planes_ = description.n_planes;
   n_columns_ = description.n_columns;
   mesh_digest_ = std::move(description.mesh_digest);
+  // A bundle holds a centre for every cell it speaks of: its sizes are bounded by its bytes.
+  const auto centre = file_.tensors().find("mesh/centre");
+  if (centre == file_.tensors().end() || centre->second.shape() != std::vector{n_planes_ * n_columns_, std::size_t{3}}) {
+    throw InputError({.what = "mesh without its cells",
+                      .where = file_.where() + ":mesh/centre",
+                      .expected = "centres of " + std::to_string(n_planes_ * n_columns_) + " cells"});
+  }
 }
 
 field::Mesh BundleReader::mesh(const MeshPart& part) const {
@@ -113,11 +120,17 @@ std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, const 
                       .advice = base::name_advice(field, names)});
   }
   auto model = load_field_model(file_, prefix, wanted);
-  if (model->n_columns() != n_columns_) {
-    throw InputError({.what = "model of another mesh",
+  const auto in_words = [](std::size_t inputs, std::size_t planes, std::size_t columns) {
+    return std::to_string(inputs) + " inputs, " + std::to_string(planes) + " planes, " +
+           std::to_string(columns) + " columns";
+  };
+  const auto found = in_words(model->n_inputs(), model->n_planes(), model->n_columns());
+  const auto expected = in_words(info_.schema.size(), n_planes_, n_columns_);
+  if (found != expected) {
+    throw InputError({.what = "model of other inputs or another mesh",
                       .where = file_.where() + ":" + prefix,
-                      .found = std::to_string(model->n_columns()) + " columns",
-                      .expected = std::to_string(n_columns_)});
+                      .found = found,
+                      .expected = expected});
   }
   return model;
 }
@@ -125,6 +138,8 @@ std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, const 
 std::unique_ptr<Uncertainty> BundleReader::uncertainty(const std::string& field) const {
   const auto prefix = uncertainty_prefix(field);
   if (!file_.has_text(prefix)) return nullptr;
+  const std::size_t shape[] = {n_planes_, n_columns_};
+  static_cast<void>(file_.tensor(prefix + "/scale", shape));
   auto uncertainty = std::make_unique<Uncertainty>(Uncertainty::load(file_, prefix));
   if (uncertainty->n_inputs() != 0 && uncertainty->n_inputs() != info_.schema.size()) {
     throw InputError({.what = "intervals of other boundary conditions",

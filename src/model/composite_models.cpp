@@ -28,12 +28,13 @@ std::size_t count_of(const nlohmann::json& description, const std::string& key, 
 
 BlendModel::BlendModel(std::vector<Part> parts, const std::string& where) : parts_(std::move(parts)) {
   const bool fits = !parts_.empty() && std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-    return std::isfinite(part.weight) && part.model->n_columns() == parts_.front().model->n_columns();
+    return std::isfinite(part.weight) && part.model->n_inputs() == n_inputs() &&
+           part.model->n_planes() == n_planes() && part.model->n_columns() == n_columns();
   });
   if (!fits) {
     throw InputError({.what = "blend of models that do not fit together",
                       .where = where,
-                      .expected = "at least one model, finite weights, the same columns"});
+                      .expected = "at least one model, finite weights, the same inputs, planes and columns"});
   }
 }
 
@@ -187,7 +188,7 @@ std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const 
   }
   std::unique_ptr<MirrorModel> mirror(new MirrorModel());
   mirror->model_ = load_field_model(file, prefix + "/model", wanted);
-  std::size_t n_inputs = 0;
+  const std::size_t n_inputs = mirror->n_inputs();
   for (std::size_t i = 0; i < n; ++i) {
     const std::string image = prefix + "/image" + std::to_string(i);
     const std::array<std::size_t, 1> inputs{n_inputs};
@@ -195,9 +196,9 @@ std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const 
     Image part{file.tensor(image + "/input_from", inputs), file.tensor(image + "/input_sign", inputs),
                file.tensor(image + "/input_offset", inputs), file.tensor(image + "/column_from", columns),
                (*signs)[i].get<float>()};
-    n_inputs = part.input_from.size();
-    if (part.input_sign.f64().size() != n_inputs || part.offset.f64().size() != n_inputs ||
-        part.column_from.size() == 0) {
+    const std::size_t n_maps = part.column_from.shape()[0];
+    if (part.input_from.size() != n_inputs || part.input_sign.f64().size() != n_inputs ||
+        part.offset.f64().size() != n_inputs || (n_maps != 1 && n_maps != mirror->n_planes())) {
       throw InputError(
           {.what = "parts of a mirror image do not fit together", .where = file.where() + ":" + image});
     }

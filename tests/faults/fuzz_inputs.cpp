@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "../../data/child_process.hpp"
+#include "elrom/base/child_process.hpp"
 #include "elrom/base/error.hpp"
 #include "fuzz_targets.hpp"
 
@@ -64,9 +64,9 @@ Tally fuzz_inputs(const Workshop& shop) {
     for (std::size_t begin = 0; begin < n_inputs; begin += block) {
       std::string failure;
       try {
-        ingest::try_in_child(target.name, "inputs from " + std::to_string(begin),
-                             [&] { run_inputs(target, seeds, seed, begin, begin + block); },
-                             {.seconds = 120, .memory_bytes = std::size_t{512} << 20});
+        base::try_in_child(target.name, "inputs from " + std::to_string(begin),
+                           [&] { run_inputs(target, seeds, seed, begin, begin + block); },
+                           {.seconds = 120, .memory_bytes = std::size_t{512} << 20});
       } catch (const Error& error) {
         failure = error.what();
       }

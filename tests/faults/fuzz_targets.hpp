@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,7 +22,10 @@ struct FuzzTarget {
 /// the input), cases_csv, cases_json, cases_toml, fluent_ascii, foam.
 [[nodiscard]] const std::vector<FuzzTarget>& fuzz_targets();
 
-/// Small valid inputs to start from; the first byte files of a corpus.
+/// Small inputs to start from, and inputs that once did harm: the files of tests/faults/corpus/<target>.
 [[nodiscard]] std::vector<std::string> seeds_of(const std::string& target);
+[[nodiscard]] std::filesystem::path corpus_folder();
+/// Makes the corpus' good bundles anew: when their format has changed.
+void write_bundle_seeds();
 
 }  // namespace elrom::faults

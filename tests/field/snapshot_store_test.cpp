@@ -147,6 +147,28 @@ TEST_F(Store, UnknownFieldsAreNamedWithTheNearest) {
   EXPECT_TRUE(store.find("x*").empty());
 }
 
+TEST_F(Store, DamageAnywhereIsFoundOnOpeningOrHarmsNothing) {
+  write({{"a", 1.25F}, {"b", 2}});
+  const auto whole = test::read_bytes(path_);
+  const auto values = SnapshotStore::open(path_).read("pressure", std::vector<std::size_t>{0, 1});
+  std::size_t n_found = 0;
+  for (std::size_t at = whole.size() / 4; at < whole.size(); at += whole.size() / 40) {
+    auto bytes = whole;
+    for (std::size_t i = at; i < std::min(bytes.size(), at + 64); ++i)
+      bytes[i] = static_cast<char>(bytes[i] ^ 0x55);
+    test::write_bytes(path_, bytes);
+    try {
+      const auto store = SnapshotStore::open(path_);
+      EXPECT_EQ(store.read("pressure", std::vector<std::size_t>{0, 1}), values) << "byte " << at;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("s.h5"));
+      ++n_found;
+    }
+  }
+
+  EXPECT_GT(n_found, 5U);
+}
+
 TEST_F(Store, TheSameCasesGiveTheSameBytes) {
   write({{"a", 1}, {"b", 2}});
   const auto first = base::sha256_file(path_);

@@ -7,6 +7,7 @@
 
 #include "elrom/base/error.hpp"
 #include "support/random_network.hpp"
+#include "support/throws.hpp"
 
 namespace elrom::model {
 namespace {
@@ -174,6 +175,28 @@ TEST(BandedNetworks, RefusesACellThatNobodyAnswersFor) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("plane 0, column 1"));
     EXPECT_THAT(error.what(), ::testing::HasSubstr("0 submodels"));
   }
+}
+
+TEST(BandedNetworks, RefusesACellThatTwoMasksCover) {
+  auto parts = make_parts();
+  parts.submodels[0] = make_submodel({0, 1, 2, 3, 4, 5, 6, 7, 8}, parts.planes.size(), 3);
+  parts.submodels[1] = make_submodel(parts.submodels[0].columns, parts.planes.size(), 4);
+  parts.submodels[0].mask.assign(n_planes * n_columns, 1);
+  parts.submodels[1].mask.assign(n_planes * n_columns, 0);
+  EXPECT_NO_THROW(BandedNetworks{parts});
+  parts.submodels[1].mask[4 * n_columns + 7] = 1;
+
+  EXPECT_ERROR(InputError, "plane 4, column 7: found 2 submodels", BandedNetworks(parts));
+  parts.submodels[0].mask[4 * n_columns + 7] = parts.submodels[1].mask[4 * n_columns + 7] = 0;
+  EXPECT_ERROR(InputError, "plane 4, column 7: found 0 submodels", BandedNetworks(parts));
+}
+
+// A file of a few bytes may speak of any number of planes.
+TEST(BandedNetworks, RefusesMorePlanesThanAnyFurnaceHas) {
+  auto parts = make_parts(PlaneEncodingKind::fourier);
+  parts.planes.n_planes = 10'000'000;
+
+  EXPECT_ERROR(InputError, "plane encoding: found 10000000 planes", BandedNetworks(parts));
 }
 
 TEST(BandedNetworks, FarOutsideTheFieldsStayFiniteAndBounded) {

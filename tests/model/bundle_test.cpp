@@ -6,6 +6,7 @@
 #include "elrom/model/banded_networks.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/throws.hpp"
 
 namespace elrom::model {
 namespace {
@@ -152,6 +153,53 @@ void damage(const std::filesystem::path& from, const std::filesystem::path& to, 
   std::string bytes = read_bytes(from);
   bytes[bytes.find(pattern) + 3] ^= 1;
   write_bytes(to, bytes);
+// A bundle that is made to do harm has true digests: what it says is checked against what it holds.
+TEST(Bundle, RefusesSizesThatItHasNoCellsFor) {
+  const TemporaryFolder folder;
+  sample_bundle().write(folder / "a");
+  auto description = io::TensorFile::open(folder / "a").text("bundle");
+  const std::string planes = "\"n_planes\":5";
+  description.replace(description.find(planes), planes.size(), "\"n_planes\":100000000");
+  replace_text(folder / "a", "bundle", description);
+
+  EXPECT_THAT(message_of(folder / "a"), HasSubstr("mesh/centre: expected centres of 1200000000 cells"));
+}
+
+TEST(Bundle, RefusesAModelOfOtherPlanes) {
+  const TemporaryFolder folder;
+  sample_bundle().write(folder / "a");
+  auto description = io::TensorFile::open(folder / "a").text("fields/pressure");
+  const std::string planes = "\"planes\":5";
+  description.replace(description.find(planes), planes.size(), "\"planes\":4");
+  replace_text(folder / "a", "fields/pressure", description);
+  const BundleReader reader(folder / "a");
+
+  EXPECT_ERROR(InputError, "found 4 inputs, 4 planes, 12 columns, expected 4 inputs, 5 planes, 12 columns",
+               reader.model("pressure"));
+}
+
+TEST(Bundle, RefusesAModelOfOtherInputs) {
+  const TemporaryFolder folder;
+  auto bundle = sample_bundle();
+  base::Random random(base::Seed(1));
+  test::BundleSize other;
+  other.n_inputs = 3;
+  bundle.models["pressure"] =
+      test::random_networks(bundle.info.fields[6], test::sample_inputs(other, random), other, random);
+  bundle.write(folder / "a");
+
+  EXPECT_ERROR(InputError, "found 3 inputs, 5 planes, 12 columns",
+               BundleReader(folder / "a").model("pressure"));
+}
+
+TEST(Bundle, RefusesIntervalsOfAnotherMesh) {
+  const TemporaryFolder folder;
+  auto bundle = sample_bundle();
+  bundle.uncertainty["pressure"] = std::make_shared<Uncertainty>(MatrixF(MatrixF::Random(6, 24)), 12);
+  bundle.write(folder / "a");
+
+  EXPECT_ERROR(InputError, "scale: found (2, 12), expected (5, 12)",
+               BundleReader(folder / "a").uncertainty("pressure"));
 }
 
 TEST(Bundle, ADamagedWeightIsFoundWhenItsFieldIsRead) {

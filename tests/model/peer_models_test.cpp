@@ -233,5 +233,19 @@ TEST(MirrorModel, IsTheSameAfterSaveAndLoad) {
   EXPECT_EQ(file.tensor("m/image1/column_from").shape()[0], 1U);  // one map for all planes
 }
 
+TEST(MirrorModel, RefusesMapsOfOtherPlanesOrInputs) {
+  const auto group = field::symmetry_group({swap_mirror(n_planes)}, 3, n_planes * n_columns);
+  io::TensorFile file;
+  MirrorModel(make("pod_gp"), group, field::Parity::scalar, n_planes).save(file, "m");
+  const std::vector<std::int32_t> zeros(2 * n_columns, 0);
+  auto few_planes = file, few_inputs = file;
+  few_planes.set("m/image1/column_from",
+                 io::Tensor::copy(std::span<const std::int32_t>(zeros), {2, n_columns}));
+  few_inputs.set("m/image0/input_from", io::Tensor::copy(std::span<const std::int32_t>(zeros).first(2), {2}));
+
+  EXPECT_ERROR(InputError, "image1", load_field_model(few_planes, "m"));
+  EXPECT_ERROR(InputError, "image0/input_from", load_field_model(few_inputs, "m"));
+}
+
 }  // namespace
 }  // namespace elrom::model

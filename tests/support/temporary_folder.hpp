@@ -13,8 +13,9 @@ namespace elrom::test {
 
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "elrom-test-XXXXXX").string();
+  /// @param place where to make it
+  explicit TemporaryFolder(const std::filesystem::path& place = std::filesystem::temp_directory_path()) {
+    std::string pattern = (place / "elrom-test-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot make a folder for the test");
     path_ = pattern;
   }

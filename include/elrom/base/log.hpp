@@ -37,7 +37,7 @@ Log& silent_log();
 
 /// To standard error: a live line with rate and remaining time on a terminal, plain lines every few seconds
 /// otherwise.
-/// @param lowest messages below this level are dropped
+/// @param lowest messages below this level are dropped; progress is worth an info
 std::unique_ptr<Log> make_console_log(Level lowest = Level::info);
 
 }  // namespace elrom

@@ -38,7 +38,8 @@ struct Snapshot {
 /// Read access. Thread rule: one thread at a time (the HDF5 library has one lock).
 class SnapshotStore {
  public:
-  /// @throws InputError when it is no store, or of a newer major format
+  /// Reads the whole file in a child process first (io::survive).
+  /// @throws InputError when it is no store, of a newer major format, or broken anywhere
   [[nodiscard]] static SnapshotStore open(const std::filesystem::path& path);
   SnapshotStore(SnapshotStore&&) noexcept;
   SnapshotStore& operator=(SnapshotStore&&) noexcept;
@@ -62,6 +63,7 @@ class SnapshotStore {
 
  private:
   struct Impl;
+  static SnapshotStore open_here(const std::filesystem::path& path);
   explicit SnapshotStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

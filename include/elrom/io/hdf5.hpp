@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -166,6 +167,14 @@ class Hdf5File : public Hdf5Group {
  private:
   using Hdf5Group::Hdf5Group;
 };
+
+/// Malformed files find crashes in the HDF5 library itself. Runs `work`, all that will be read of the user's
+/// file at `path`, in a child process first; memory and time are limited by the file's size. A file that
+/// survived is not tried again while it stays as it is and `work_name` is the same.
+/// @throws InputError when the child crashed or went beyond its limits, or what `work` threw there
+/// Thread rule: as the library's, one thread at a time.
+void survive(const std::filesystem::path& path, const std::string& work_name,
+             const std::function<void()>& work);
 
 /// Header of every file of ours: attributes `kind`, `format` = [major, minor], `program`.
 void write_kind(const Hdf5Object& object, std::string_view kind, FormatVersion version);

@@ -51,6 +51,8 @@ class BandedNetworks : public FieldModel {
   explicit BandedNetworks(Parts parts);
 
   [[nodiscard]] std::string kind() const override { return "networks"; }
+  [[nodiscard]] std::size_t n_inputs() const override { return parts_.inputs.size(); }
+  [[nodiscard]] std::size_t n_planes() const override { return parts_.planes.n_planes; }
   [[nodiscard]] std::size_t n_columns() const override { return parts_.n_columns; }
   [[nodiscard]] const Parts& parts() const { return parts_; }
   void predict(const Query& query, std::span<float> values, std::span<float> spread,

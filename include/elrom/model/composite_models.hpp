@@ -18,10 +18,12 @@ class BlendModel final : public FieldModel {
     double weight = 0;
     std::shared_ptr<const FieldModel> model;
   };
-  /// @throws InputError without parts, or when their columns differ
+  /// @throws InputError without parts, or when their inputs, planes or columns differ
   explicit BlendModel(std::vector<Part> parts, const std::string& where = "memory");
 
   [[nodiscard]] std::string kind() const override { return "blend"; }
+  [[nodiscard]] std::size_t n_inputs() const override { return parts_.front().model->n_inputs(); }
+  [[nodiscard]] std::size_t n_planes() const override { return parts_.front().model->n_planes(); }
   [[nodiscard]] std::size_t n_columns() const override { return parts_.front().model->n_columns(); }
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   void predict(const Query& query, std::span<float> values, std::span<float> spread,
@@ -44,6 +46,8 @@ class MirrorModel final : public FieldModel {
               field::Parity parity, std::size_t n_planes);
 
   [[nodiscard]] std::string kind() const override { return "mirror"; }
+  [[nodiscard]] std::size_t n_inputs() const override { return model_->n_inputs(); }
+  [[nodiscard]] std::size_t n_planes() const override { return model_->n_planes(); }
   [[nodiscard]] std::size_t n_columns() const override { return model_->n_columns(); }
   void predict(const Query& query, std::span<float> values, std::span<float> spread,
                Workspace& workspace) const override;

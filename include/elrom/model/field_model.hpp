@@ -59,6 +59,9 @@ class FieldModel {
 
   /// "nearest", "linear", "pod_gp", "networks" ... as in study.toml and in the bundle.
   [[nodiscard]] virtual std::string kind() const = 0;
+  /// What it takes and gives; the same for every part of a composite.
+  [[nodiscard]] virtual std::size_t n_inputs() const = 0;
+  [[nodiscard]] virtual std::size_t n_planes() const = 0;
   [[nodiscard]] virtual std::size_t n_columns() const = 0;
 
   /// Field values in SI. Results for a plane do not depend on which other planes are asked for, to the bit.
@@ -78,7 +81,8 @@ struct Wanted {
 };
 
 /// Reads what save() wrote, or a part of it that answers queries for that part and no other.
-/// @throws InputError for an unknown kind or a wrong shape, naming file and tensor
+/// @throws InputError for an unknown kind or parts that do not fit together, naming file and tensor; that the
+/// whole fits a mesh and inputs is for the caller to see
 [[nodiscard]] std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file, const std::string& prefix,
                                                            const Wanted& wanted = {});
 

@@ -19,6 +19,8 @@ class NearestModel final : public FieldModel {
                const std::string& where = "memory");
 
   [[nodiscard]] std::string kind() const override { return "nearest"; }
+  [[nodiscard]] std::size_t n_inputs() const override { return static_cast<std::size_t>(scaler_.size()); }
+  [[nodiscard]] std::size_t n_planes() const override { return values_.shape()[1] / n_columns_; }
   [[nodiscard]] std::size_t n_columns() const override { return n_columns_; }
   /// Index of the training case that answers; the first of equally near ones.
   [[nodiscard]] std::size_t nearest(std::span<const double> inputs, Workspace& workspace) const;

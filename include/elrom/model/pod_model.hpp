@@ -31,6 +31,8 @@ class PodModel final : public FieldModel {
   explicit PodModel(Parts parts, const std::string& where = "memory");
 
   [[nodiscard]] std::string kind() const override { return parts_.kind; }
+  [[nodiscard]] std::size_t n_inputs() const override { return parts_.coefficients->n_inputs(); }
+  [[nodiscard]] std::size_t n_planes() const override { return n_planes_; }
   [[nodiscard]] std::size_t n_columns() const override { return n_columns_; }
   [[nodiscard]] std::size_t n_modes() const { return n_modes_; }
   [[nodiscard]] const CoefficientModel& coefficients() const { return *parts_.coefficients; }

@@ -1,4 +1,4 @@
-#include "../../data/child_process.hpp"
+#include "elrom/base/child_process.hpp"
 
 #include <gmock/gmock.h>
 #include <sched.h>
@@ -8,7 +8,7 @@
 
 #include "elrom/base/error.hpp"
 
-namespace elrom::ingest {
+namespace elrom::base {
 namespace {
 
 using ::testing::AllOf;
@@ -59,4 +59,4 @@ TEST(ChildProcess, MemoryIsLimited) {
 #endif
 
 }  // namespace
-}  // namespace elrom::ingest
+}  // namespace elrom::base

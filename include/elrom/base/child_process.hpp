@@ -9,7 +9,7 @@
 #include <functional>
 #include <string>
 
-namespace elrom::ingest {
+namespace elrom::base {
 
 struct ChildLimits {
   double seconds = 60;
@@ -24,4 +24,4 @@ struct ChildLimits {
 void try_in_child(const std::string& culprit, const std::string& where, const std::function<void()>& work,
                   const ChildLimits& limits = {});
 
-}  // namespace elrom::ingest
+}  // namespace elrom::base

@@ -1,4 +1,4 @@
-#include "child_process.hpp"
+#include "elrom/base/child_process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -17,7 +17,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 
-namespace elrom::ingest {
+namespace elrom::base {
 namespace {
 
 // Exit statuses of the child; everything else is a crash.
@@ -129,9 +129,9 @@ void try_in_child(const std::string& culprit, const std::string& where, const st
   if (!in_time) {
     throw InputError({.what = culprit + " does not come to an end with this file",
                       .where = where,
-                      .expected = "at most " + base::duration(limits.seconds)});
+                      .expected = "at most " + duration(limits.seconds)});
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != done) throw_for(status, culprit, where, report, limits);
 }
 
-}  // namespace elrom::ingest
+}  // namespace elrom::base
