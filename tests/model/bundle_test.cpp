@@ -153,6 +153,8 @@ void damage(const std::filesystem::path& from, const std::filesystem::path& to, 
   std::string bytes = read_bytes(from);
   bytes[bytes.find(pattern) + 3] ^= 1;
   write_bytes(to, bytes);
+}
+
 // A bundle that is made to do harm has true digests: what it says is checked against what it holds.
 TEST(Bundle, RefusesSizesThatItHasNoCellsFor) {
   const TemporaryFolder folder;
