@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
+#include <map>
 
 #include "campaign.hpp"
 #include "elrom/base/atomic_file.hpp"
@@ -15,22 +16,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs the command with its n-th write failing, for growing n, until it no longer reaches the n-th.
+/// What fails: see failing_calls.c.
+struct Failure {
+  std::string name, variable;
+  std::map<std::string, std::string> environment = {};
+  std::size_t few = 12;  ///< how many are tried in the short campaign
+};
+
+/// Runs the command with its n-th call failing, for growing n, until that happens no more to it.
 /// @param state_is_good looks at what is left, after every run
-void fail_every_write(const std::string& name, const std::vector<std::string>& command, const Workshop& shop,
-                      const std::function<void()>& prepare,
-                      const std::function<bool(bool succeeded)>& state_is_good, Tally& tally) {
-  const std::size_t most = shop.times(2000, 12);
+void fail_every_call(const Failure& failure, const std::string& name, const std::vector<std::string>& command,
+                     const Workshop& shop, const std::function<void()>& prepare,
+                     const std::function<bool(bool succeeded)>& state_is_good, Tally& tally) {
+  const std::size_t most = shop.times(2000, failure.few);
   // Steps grow: the first writes of a program are the delicate ones, later ones are much alike.
   for (std::size_t n = 1, tried = 0; tried < most; n += 1 + n / 8, ++tried) {
     prepare();
-    const auto exit =
-        run(command, {{"LD_PRELOAD", shop.preload.string()}, {"ELROM_FAIL_AT", std::to_string(n)}});
+    auto environment = failure.environment;
+    environment["LD_PRELOAD"] = shop.preload.string();
+    environment[failure.variable] = std::to_string(n);
+    const auto exit = run(command, environment);
+    if (exit.output.find("[call failed]") == std::string::npos) return;
     const bool succeeded = exit.status == 0;
-    const auto story = name + ", write " + std::to_string(n) + ": status " + std::to_string(exit.status) +
-                       ", signal " + std::to_string(exit.signal) + ", " + exit.output.substr(0, 300);
+    const auto story = name + ", " + failure.name + " " + std::to_string(n) + ": status " +
+                       std::to_string(exit.status) + ", signal " + std::to_string(exit.signal) + ", " +
+                       exit.output.substr(0, 300);
     tally.count(exit.signal == 0 && !exit.timed_out && state_is_good(succeeded), story);
-    if (succeeded) return;
   }
 }
 
@@ -68,13 +79,13 @@ class TinyDisk {
 
 }  // namespace
 
-Tally failing_writes(const Workshop& shop) {
-  Tally tally;
-  const auto store = shop.folder / "failing.h5", old_store = shop.folder / "failing_old.h5";
-  if (run(shop.import_command(old_store, shop.case_files(8))).status != 0)
-    throw std::runtime_error("cannot import");
-  fail_every_write(
-      "import", shop.import_command(store, shop.case_files(3, 8)), shop,
+namespace {
+
+/// Import, training and prediction under one kind of failure: old or new state, no death by a signal.
+void fail_programs(const Failure& failure, const Workshop& shop, const fs::path& folder, Tally& tally) {
+  const auto store = folder / "store.h5", old_store = folder / "old.h5";
+  fail_every_call(
+      failure, "import", shop.import_command(store, shop.case_files(3, 8)), shop,
       [&] { fs::copy_file(old_store, store, fs::copy_options::overwrite_existing); },
       [&](bool succeeded) {
         const long state = store_state(store);
@@ -82,18 +93,22 @@ Tally failing_writes(const Workshop& shop) {
       },
       tally);
 
-  const auto study = shop.folder / "failing_study";
-  shop.make_study(study, 10);
-  fail_every_write(
-      "training", shop.train_command(study), shop, [] {},
-      [&](bool succeeded) {
-        return whole_or_absent(study / "model.elrom") && (!succeeded || fs::exists(study / "model.elrom"));
-      },
-      tally);
+  const auto study = folder / "study", study_before = folder / "study_before";
+  const auto fresh = [&] {
+    fs::remove_all(study);
+    fs::copy(study_before, study);
+  };
+  const auto good_study = [&](bool succeeded) {
+    return whole_or_absent(study / "model.elrom") && (!succeeded || fs::exists(study / "model.elrom"));
+  };
+  fail_every_call(failure, "training", shop.train_command(study), shop, fresh, good_study, tally);
+  fresh();
+  const auto after = run(shop.train_command(study));
+  tally.count(after.status == 0 && good_study(true), "training after failures: " + after.output);
 
-  const auto output = shop.folder / "failing_predictions";
-  fail_every_write(
-      "prediction", shop.predict_command(study / "model.elrom", output), shop,
+  const auto output = folder / "predictions";
+  fail_every_call(
+      failure, "prediction", shop.predict_command(study / "model.elrom", output), shop,
       [&] { fs::remove_all(output); },
       [&](bool succeeded) {
         if (succeeded || !fs::exists(output)) return true;
@@ -102,7 +117,30 @@ Tally failing_writes(const Workshop& shop) {
                             [](const auto& entry) { return entry.path().extension() == ".tmp"; });
       },
       tally);
+}
+
+Tally under(const std::vector<Failure>& failures, const Workshop& shop, const std::string& name) {
+  Tally tally;
+  const auto folder = shop.folder / name;
+  fs::create_directories(folder);
+  if (run(shop.import_command(folder / "old.h5", shop.case_files(8))).status != 0)
+    throw std::runtime_error("cannot import");
+  shop.make_study(folder / "study_before", 10);
+  for (const auto& failure : failures) fail_programs(failure, shop, folder, tally);
   return tally;
+}
+
+}  // namespace
+
+Tally failing_writes(const Workshop& shop) {
+  return under({{"full disk at call", "ELROM_FAIL_AT"},
+                {"broken disk at call", "ELROM_FAIL_AT", {{"ELROM_FAIL_WITH", std::to_string(EIO)}}, 4},
+                {"short write", "ELROM_SHORT_AT", {}, 4}},
+               shop, "failing_writes");
+}
+
+Tally failing_allocations(const Workshop& shop) {
+  return under({{"no memory at allocation", "ELROM_FAIL_ALLOCATION"}}, shop, "failing_allocations");
 }
 
 Tally disk_full(const Workshop& shop) {

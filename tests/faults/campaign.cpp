@@ -31,6 +31,7 @@ const std::vector<Section>& sections() {
       {"unit_mistakes", "slips between units in the shipped cases are caught", unit_mistakes},
       {"hard_cases", "hard data ends in finite numbers or a clear error", hard_cases},
       {"failing_writes", "failing writes leave old or new state", failing_writes},
+      {"failing_allocations", "memory that runs out leaves old or new state", failing_allocations},
       {"disk_full", "a full disk leaves old or new state", disk_full},
       {"two_at_once", "two programs on one store or study; readers meanwhile", two_at_once},
       {"fuzz", "hostile bundles, tables and cases are refused", fuzz_inputs},
@@ -40,9 +41,9 @@ const std::vector<Section>& sections() {
 
 void print(const Section& section, const Tally& tally) {
   if (!tally.skipped.empty()) {
-    fmt::print("{:<16}skipped: {}\n", section.key, tally.skipped);
+    fmt::print("{:<20}skipped: {}\n", section.key, tally.skipped);
   } else {
-    fmt::print("{:<16}{} of {}  {}\n", section.key, tally.passed, tally.of, section.what);
+    fmt::print("{:<20}{} of {}  {}\n", section.key, tally.passed, tally.of, section.what);
   }
   for (const auto& failure : tally.failures) fmt::print("    {}\n", failure);
   std::fflush(stdout);

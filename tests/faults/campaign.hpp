@@ -55,9 +55,11 @@ Tally flipped_bytes(const Workshop& workshop);
 Tally unit_mistakes(const Workshop& workshop);
 /// The table of tests/stability.
 Tally hard_cases(const Workshop& workshop);
-/// The n-th write, truncation, fsync or rename fails; afterwards old or new state, and no program dies by a
-/// signal.
+/// The n-th write, truncation, fsync or rename fails (full disk, broken disk), or a write is short; afterwards
+/// old or new state, and no program dies by a signal.
 Tally failing_writes(const Workshop& workshop);
+/// The same when the n-th allocation fails.
+Tally failing_allocations(const Workshop& workshop);
 /// The same on a file system that is really full; skipped where none may be mounted.
 Tally disk_full(const Workshop& workshop);
 /// Two programs on one store or study: one works, the other waits or refuses; readers see whole files.
