@@ -80,7 +80,8 @@ std::optional<double> recorded_seconds(const std::filesystem::path& folder) {
 }
 
 /// The same cases in a folder of its own, with nothing to reuse.
-double seconds_from_nothing(const RetrainArguments& arguments, study::Settings settings, Log& log) {
+double seconds_from_nothing(const RetrainArguments& arguments, study::Settings settings,
+                            const study::Toolbox& tools, Log& log) {
   const auto folder = arguments.study.folder / ".from_nothing";
   std::filesystem::remove_all(folder);
   settings.store = std::filesystem::absolute(std::filesystem::path(settings.store).is_absolute()
@@ -88,13 +89,14 @@ double seconds_from_nothing(const RetrainArguments& arguments, study::Settings s
                                                  : arguments.study.folder / settings.store)
                        .string();
   const auto begin = Clock::now();
-  study::Study(folder, settings, make_toolbox(settings), log, base::interrupt_token()).fit();
+  study::Study(folder, settings, tools, log, base::interrupt_token()).fit();
   const double seconds = since(begin);
   std::filesystem::remove_all(folder);
   return seconds;
 }
 
-Json retrain(const RetrainArguments& arguments, const study::Settings& settings, Log& log) {
+Json retrain(const RetrainArguments& arguments, const study::Settings& settings, const study::Toolbox& tools,
+             Log& log) {
   const auto& folder = arguments.study.folder;
   const auto current = folder / "model.elrom", candidate = folder / "candidate.elrom";
   if (!std::filesystem::exists(current)) {
@@ -106,7 +108,7 @@ Json retrain(const RetrainArguments& arguments, const study::Settings& settings,
   const auto earlier = model::BundleReader(current).info().cases;
   auto from_nothing = recorded_seconds(folder);
   const auto begin = Clock::now();
-  study::Study study(folder, settings, make_toolbox(settings), log, base::interrupt_token());
+  study::Study study(folder, settings, tools, log, base::interrupt_token());
   study.reuse_plans_of(earlier);
   study.fit(candidate);
   const double seconds = since(begin);
@@ -116,7 +118,7 @@ Json retrain(const RetrainArguments& arguments, const study::Settings& settings,
     std::filesystem::rename(candidate, current);
   else
     std::filesystem::remove(candidate);
-  if (arguments.compare) from_nothing = seconds_from_nothing(arguments, settings, log);
+  if (arguments.compare) from_nothing = seconds_from_nothing(arguments, settings, tools, log);
   return {{"kind", "elrom-retrain"},
           {"format", {1, 0}},
           {"program", program_version()},
@@ -130,14 +132,7 @@ Json retrain(const RetrainArguments& arguments, const study::Settings& settings,
           {"promoted", promoted}};
 }
 
-int run_retrain(const RetrainArguments& arguments) {
-  auto with = arguments.study;
-  if (arguments.small) {
-    with.effort = "quick";
-    with.settings.emplace_back("peers.networks=false");
-  }
-  const auto log = with.log();
-  const auto report = retrain(arguments, with.resolve(), *log);
+int print(const RetrainArguments& arguments, const Json& report) {
   if (!arguments.json.empty()) base::write_text(arguments.json, report.dump(1) + "\n");
   fmt::print("{} -> {} cases in {}; error {} -> {} ({}); {}\n", report["cases_before"].get<int>(),
              report["cases_after"].get<int>(), base::duration(report["seconds"]),
@@ -145,6 +140,17 @@ int run_retrain(const RetrainArguments& arguments) {
              report["judged_on"].get<std::string>(),
              report["promoted"].get<bool>() ? "promoted" : "not promoted: it would be worse");
   return 0;
+}
+
+int run_retrain(const RetrainArguments& arguments) {
+  auto with = arguments.study;
+  if (arguments.small) {
+    with.effort = "quick";
+    with.settings.emplace_back("peers.networks=false");
+  }
+  return in_study(with, [&](const study::Settings& settings, const study::Toolbox& tools, Log& log) {
+    return print(arguments, retrain(arguments, settings, tools, log));
+  });
 }
 
 }  // namespace

@@ -20,11 +20,10 @@ void print_outcomes(const std::vector<study::FieldOutcome>& outcomes) {
   fmt::print("{:<24} {:>10}\n", "mean", base::rounded(sum / static_cast<double>(outcomes.size()), 3));
 }
 
-int train(const StudyArguments& arguments, bool with_peers) {
+int train(const StudyArguments& arguments, bool with_peers, const study::Settings& settings,
+          const study::Toolbox& tools, Log& log) {
   const auto begin = std::chrono::steady_clock::now();
-  const auto settings = arguments.resolve();
-  const auto log = arguments.log();
-  study::Study study(arguments.folder, settings, make_toolbox(settings), *log, base::interrupt_token());
+  study::Study study(arguments.folder, settings, tools, log, base::interrupt_token());
   print_outcomes(with_peers ? study.run() : study.fit());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   fmt::print("{} in {}\n", (arguments.folder / "model.elrom").string(), base::duration(seconds));
@@ -37,7 +36,12 @@ void add_training(CLI::App& app, Run& run, const std::string& name, const std::s
   auto arguments = std::make_shared<StudyArguments>();
   arguments->add_to(*command);
   command->callback([&run, arguments, with_peers] {
-    run = [arguments, with_peers] { return train(*arguments, with_peers); };
+    run = [arguments, with_peers] {
+      return in_study(*arguments,
+                      [&](const study::Settings& settings, const study::Toolbox& tools, Log& log) {
+                        return train(*arguments, with_peers, settings, tools, log);
+                      });
+    };
   });
 }
 

@@ -23,11 +23,12 @@ void add_planning(CLI::App& app, Run& run, const std::string& name, const std::s
   arguments->add_to(*command);
   command->callback([&run, arguments, with_search] {
     run = [arguments, with_search] {
-      const auto settings = arguments->resolve();
-      const auto log = arguments->log();
-      study::Study study(arguments->folder, settings, make_toolbox(settings), *log, base::interrupt_token());
-      print_bands(with_search ? study.search() : study.screen());
-      return 0;
+      return in_study(*arguments,
+                      [&](const study::Settings& settings, const study::Toolbox& tools, Log& log) {
+                        study::Study study(arguments->folder, settings, tools, log, base::interrupt_token());
+                        print_bands(with_search ? study.search() : study.screen());
+                        return 0;
+                      });
     };
   });
 }

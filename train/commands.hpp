@@ -27,8 +27,11 @@ struct StudyArguments {
   [[nodiscard]] std::unique_ptr<Log> log() const;
 };
 
-/// What this build can train with (see make_trainer.cpp).
-[[nodiscard]] study::Toolbox make_toolbox(const study::Settings& settings);
+/// What a subcommand does with the study that its arguments name; its value is the exit status.
+using StudyWork = std::function<int(const study::Settings& settings, const study::Toolbox& tools, Log& log)>;
+/// Does it with what this build can train with (study_tools.cpp). Among several processes (mpirun) one does;
+/// the others train for it. @throws NotBuiltError for several processes without MPI
+[[nodiscard]] int in_study(const StudyArguments& arguments, const StudyWork& work);
 
 /// A subcommand sets `run` when it is chosen; its value is the exit status.
 using Run = std::function<int()>;

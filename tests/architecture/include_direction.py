@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Each layer includes only what is left of it:
-base -> {math, io} -> field -> model -> {ingest, study} -> {torch, report} -> programs."""
+base -> {math, io} -> field -> model -> {ingest, study} -> {torch, mpi, report} -> programs."""
 import pathlib
 import re
 import sys
@@ -14,12 +14,13 @@ ALLOWED = {
     "ingest": {"base", "math", "io", "field", "model"},
     "study": {"base", "math", "io", "field", "model"},
     "torch": {"base", "math", "io", "field", "model", "study"},
+    "mpi": {"base", "math", "io", "field", "model", "study"},
     "report": {"base", "math", "io", "field", "model", "study"},
 }
 # Source folder -> component; program folders at the end may use what their program links.
 FOLDERS = {
     "src/base": "base", "src/math": "math", "src/io": "io", "src/field": "field", "src/model": "model",
-    "data": "ingest", "train/study": "study", "train/torch": "torch", "train/report": "report",
+    "data": "ingest", "train/study": "study", "train/torch": "torch", "train/mpi": "mpi", "train/report": "report",
 }
 FOLDERS |= {f"include/elrom/{name}": name for name in ALLOWED}
 PROGRAMS = {"predict": {"base", "math", "io", "field", "model"}}

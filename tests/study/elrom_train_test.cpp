@@ -46,6 +46,20 @@ TEST_F(ElromTrain, MissingStoreEndsWithThree) {
   EXPECT_EQ(std::ranges::count(error, '\n'), 1) << error;
 }
 
+TEST_F(ElromTrain, AnyNumberOfThreadsGivesTheSameBytes) {
+  write_small_store(store(), 15);
+  const auto train = [&](const std::string& threads) {
+    const auto place = study() + threads;
+    EXPECT_EQ(run("run " + place + " --store " + store() + " -q --effort quick --threads " + threads), 0)
+        << error;
+    return test::read_bytes(place + "/model.elrom") + test::read_bytes(place + "/peers/networks.elrom");
+  };
+  const auto one = train("1");
+  EXPECT_FALSE(one.empty());
+  EXPECT_EQ(train("2"), one);
+  EXPECT_EQ(train("4"), one);
+}
+
 TEST_F(ElromTrain, RunThenStatusThenRetrain) {
   write_small_store(store(), 15);
   const auto arguments = study() + " --store " + store() +

@@ -127,11 +127,14 @@ ScreeningResult NetworksMethod::screen_field(const FieldData& data, std::span<co
                  to_toml(settings_, "networks"), std::to_string(context.seed.value())});
   const auto file = cache_->get("screen", field, digest, [&] {
     const auto set = screening_records(data, cases, context);
-    const ScreeningContext screening{.seed = seed,
-                                     .n_threads = context.n_threads,
-                                     .log = context.log,
-                                     .stop = context.stop,
-                                     .task = "screen " + field};
+    ScreeningContext screening{
+        .seed = seed,
+        .n_threads = settings_.screen.method == "fast" ? context.n_threads : context.n_trainings(),
+        .log = context.log,
+        .stop = context.stop,
+        .task = "screen " + field};
+    if (context.workers != nullptr)
+      screening.crew_trainer = context.workers->crew_trainer(set.records, settings_.screen, seed);
     return to_file(screen(set.records, settings_.screen, screening));
   });
   return screening_of(file);
@@ -158,7 +161,7 @@ NetworkPlan NetworksMethod::plan(const FieldData& data, std::span<const std::siz
     return set.records;
   };
   base::parallel_for(
-      plan.bands.size(), context.n_threads,
+      plan.bands.size(), context.n_trainings(),
       [&](std::size_t i, int) {
         const auto& band = plan.bands[i];
         const auto file = cache_->get("search", field + "-" + band.name, digest, [&] {
@@ -245,7 +248,7 @@ std::unique_ptr<model::FieldModel> NetworksMethod::fit(const FieldData& data,
   auto set = make_records(data, cases, split(data, cases, context), record_options(data.info.name));
   const auto digest = digest_of({"fit", digest_of(found), data_digest(data, cases), settings_text(settings_),
                                  std::to_string(context.seed.value()), trainer_->name()});
-  auto submodels = build(data, found, set, digest, settings_.fit.builds, context, context.n_threads);
+  auto submodels = build(data, found, set, digest, settings_.fit.builds, context, context.n_trainings());
   return assemble(data, std::move(set), std::move(submodels));
 }
 
@@ -256,16 +259,17 @@ MatrixF NetworksMethod::cross_predict(const FieldData& data, const Folds& folds,
   MatrixF predicted = MatrixF::Zero(data.values.rows(), data.values.cols());
   std::atomic<std::int64_t> done{0};
   const auto total = static_cast<std::int64_t>(folds.size());
+  const int within_fold = std::max(1, context.n_trainings() / static_cast<int>(folds.size()));
   base::parallel_for(
-      folds.size(), context.n_threads,
+      folds.size(), context.n_trainings(),
       [&](std::size_t i_fold, int) {
         const auto rest = rows_without(folds, i_fold);
         auto set = make_records(data, rest, split(data, rest, context), record_options(data.info.name));
         const auto digest =
             digest_of({"fold", digest_of(found), data_digest(data, rest), settings_text(settings_),
                        std::to_string(context.seed.value()), trainer_->name()});
-        auto submodels =
-            build(data, found, set, digest, std::min(settings_.fit.builds, cross_builds), context, 1);
+        auto submodels = build(data, found, set, digest, std::min(settings_.fit.builds, cross_builds),
+                               context, within_fold);
         const auto model = assemble(data, std::move(set), std::move(submodels));
         model::Workspace workspace;
         for (const auto row : folds[i_fold]) {

@@ -169,7 +169,7 @@ class PodMlp final : public Method {
     std::vector<Eigen::VectorXd> residuals(n_builds);
     const base::Seed seed = context.seed.derive("pod_mlp").derive(data.info.name);
     base::parallel_for(
-        n_builds, context.n_threads,
+        n_builds, context.n_trainings(),
         [&](std::size_t b, int) {
           const TrainingProblem problem = make_problem(table, snapshots, folds[b % folds.size()]);
           results[b] = trainer_->train(problem, options_.hyperparameters, options_.budget, seed.derive(b),

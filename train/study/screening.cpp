@@ -6,7 +6,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
-#include "screening_crew.hpp"
+#include "lane_network.hpp"
 
 namespace elrom::study {
 namespace {
@@ -40,9 +40,9 @@ double bounded(double error) {
   return error < largest_error ? error : largest_error;
 }  // NaN becomes the largest
 
-std::vector<double> records_a_plane(const ScreeningTables& tables) {
-  std::vector<double> count(tables.data.n_planes, 0.0);
-  for (const auto row : tables.judging) count[static_cast<std::size_t>(tables.data.plane[row])] += 1;
+std::vector<double> records_a_plane(const ScreeningData& data) {
+  std::vector<double> count(data.n_planes, 0.0);
+  for (const auto row : data.judging_rows()) count[static_cast<std::size_t>(data.plane[row])] += 1;
   return count;
 }
 
@@ -59,13 +59,13 @@ void check_data(const ScreeningData& data) {
 }
 
 // Outcomes of all units, in the order of the units, put into tables of errors.
-ScreeningResult collect(const ScreeningTables& tables, const std::vector<Unit>& units,
+ScreeningResult collect(const ScreeningData& data, int builds, const std::vector<Unit>& units,
                         const std::vector<std::vector<ColumnOutcome>>& outcomes) {
-  const auto n_columns = tables.data.targets.cols();
-  const auto n_builds = static_cast<Eigen::Index>(tables.settings.builds);
-  const auto count = records_a_plane(tables);
+  const auto n_columns = data.targets.cols();
+  const auto n_builds = static_cast<Eigen::Index>(builds);
+  const auto count = records_a_plane(data);
   ScreeningResult result;
-  result.error = MatrixD::Zero(static_cast<Eigen::Index>(tables.data.n_planes), n_columns);
+  result.error = MatrixD::Zero(static_cast<Eigen::Index>(data.n_planes), n_columns);
   result.build_error = MatrixD::Zero(n_builds, n_columns);
   double epochs = 0;
   for (std::size_t i = 0; i < units.size(); ++i) {
@@ -130,7 +130,8 @@ std::vector<std::uint32_t> epoch_order(base::Seed seed, std::size_t i_build, std
 ScreeningResult screen_networks(const ScreeningData& data, const ScreenSettings& settings,
                                 const ScreeningContext& context) {
   check_data(data);
-  const ScreeningTables tables(data, settings, context.seed);
+  const auto train_crew =
+      context.crew_trainer ? context.crew_trainer : make_crew_trainer(data, settings, context.seed);
   const auto units =
       make_units(static_cast<std::size_t>(settings.builds), static_cast<std::size_t>(data.targets.cols()));
   std::vector<std::vector<ColumnOutcome>> outcomes(units.size());
@@ -140,12 +141,12 @@ ScreeningResult screen_networks(const ScreeningData& data, const ScreenSettings&
   base::parallel_for(
       units.size(), context.n_threads,
       [&](std::size_t i, int) {
-        outcomes[i] = train_crew(tables, units[i].i_build, units[i].columns, context.stop);
+        outcomes[i] = train_crew(units[i].i_build, units[i].columns, context.stop);
         const auto n = static_cast<std::int64_t>(units[i].columns.size());
         context.log->progress({context.task, done.fetch_add(n) + n, total, "networks"});
       },
       context.stop);
-  return collect(tables, units, outcomes);
+  return collect(data, settings.builds, units, outcomes);
 }
 
 ScreeningResult screen(const ScreeningData& data, const ScreenSettings& settings,

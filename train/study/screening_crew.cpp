@@ -1,4 +1,5 @@
-#include "screening_crew.hpp"
+// A crew: some columns of one build of the screening, trained together with their own early stopping.
+// Finished networks are compacted away, so that they stop costing.
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -8,6 +9,8 @@
 #include <cmath>
 
 #include "elrom/base/error.hpp"
+#include "elrom/study/screening.hpp"
+#include "lane_network.hpp"
 
 namespace elrom::study {
 namespace {
@@ -25,6 +28,33 @@ class FlushDenormals {
  private:
   unsigned saved_;
 #endif
+};
+
+MatrixF gathered(const MatrixF& inputs, const std::vector<std::uint32_t>& rows, const LaneShape& shape) {
+  MatrixF some(static_cast<Eigen::Index>(rows.size()), inputs.cols());
+  for (std::size_t r = 0; r < rows.size(); ++r) some.row(static_cast<Eigen::Index>(r)) = inputs.row(rows[r]);
+  return pad_inputs(some, shape);
+}
+
+// What all crews of a field share, laid out once.
+struct ScreeningTables {
+  ScreeningTables(const ScreeningData& data_, const ScreenSettings& settings_, base::Seed seed_)
+      : data(data_),
+        settings(settings_),
+        seed(seed_),
+        shape(static_cast<std::size_t>(data_.inputs.cols()), static_cast<std::size_t>(settings_.n_units)),
+        train(data_.rows(Part::train)),
+        validation(data_.rows(Part::validation)),
+        judging(data_.judging_rows()),
+        validation_inputs(gathered(data_.inputs, validation, shape)),
+        judging_inputs(gathered(data_.inputs, judging, shape)) {}
+
+  const ScreeningData& data;
+  const ScreenSettings& settings;
+  base::Seed seed;
+  LaneShape shape;
+  std::vector<std::uint32_t> train, validation, judging;
+  MatrixF validation_inputs, judging_inputs;  // padded, (rows, shape.k)
 };
 
 // A column in training.
@@ -263,32 +293,16 @@ class Crew {
   Scratch scratch_;
 };
 
-MatrixF gathered(const MatrixF& inputs, const std::vector<std::uint32_t>& rows, const LaneShape& shape) {
-  MatrixF some(static_cast<Eigen::Index>(rows.size()), inputs.cols());
-  for (std::size_t r = 0; r < rows.size(); ++r) some.row(static_cast<Eigen::Index>(r)) = inputs.row(rows[r]);
-  return pad_inputs(some, shape);
-}
-
 }  // namespace
 
-ScreeningTables::ScreeningTables(const ScreeningData& data_, const ScreenSettings& settings_,
-                                 base::Seed seed_)
-    : data(data_),
-      settings(settings_),
-      seed(seed_),
-      shape(static_cast<std::size_t>(data_.inputs.cols()), static_cast<std::size_t>(settings_.n_units)),
-      train(data_.rows(Part::train)),
-      validation(data_.rows(Part::validation)),
-      judging(data_.judging_rows()),
-      validation_inputs(gathered(data_.inputs, validation, shape)),
-      judging_inputs(gathered(data_.inputs, judging, shape)) {}
-
-std::vector<ColumnOutcome> train_crew(const ScreeningTables& tables, std::size_t i_build,
-                                      std::span<const std::uint32_t> columns, const std::stop_token& stop) {
-  const FlushDenormals flush;
-  Crew crew(tables, i_build, columns);
-  crew.train(stop);
-  return crew.outcomes();
+CrewTrainer make_crew_trainer(const ScreeningData& data, const ScreenSettings& settings, base::Seed seed) {
+  const auto tables = std::make_shared<const ScreeningTables>(data, settings, seed);
+  return [tables](std::size_t i_build, std::span<const std::uint32_t> columns, const std::stop_token& stop) {
+    const FlushDenormals flush;
+    Crew crew(*tables, i_build, columns);
+    crew.train(stop);
+    return crew.outcomes();
+  };
 }
 
 }  // namespace elrom::study

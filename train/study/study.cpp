@@ -71,6 +71,7 @@ struct Study::Impl {
         fields(chosen_fields(store, settings)),
         cache(folder / "stages", log),
         trials(folder / "search.sqlite"),
+        workers(toolbox.workers),
         methods(settings, std::move(toolbox), &cache, &trials) {
     plain_cases = cases;
     plain_cases.mirrors.clear();  // peers as a user would run them: without mirror images
@@ -86,7 +87,7 @@ struct Study::Impl {
 
   [[nodiscard]] base::Seed seed() const { return base::Seed(static_cast<std::uint64_t>(settings.seed)); }
   [[nodiscard]] FitContext context() const {
-    return {.seed = seed(), .n_threads = settings.n_threads(), .log = &log, .stop = stop};
+    return {.seed = seed(), .n_threads = settings.n_threads(), .log = &log, .stop = stop, .workers = workers};
   }
 
   void write_names() const {
@@ -217,6 +218,7 @@ struct Study::Impl {
   std::vector<field::FieldInfo> fields;
   StageCache cache;
   TrialStore trials;
+  const Workers* workers;
   MethodSet methods;
 };
 

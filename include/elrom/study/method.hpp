@@ -13,6 +13,7 @@
 #include "elrom/field/mesh.hpp"
 #include "elrom/field/symmetry.hpp"
 #include "elrom/model/field_model.hpp"
+#include "elrom/study/workers.hpp"
 
 namespace elrom::study {
 
@@ -20,10 +21,10 @@ namespace elrom::study {
 struct CaseSet {
   field::Mesh mesh;
   field::InputSchema schema;
-  std::vector<std::string> names;     //!< (n_cases)
-  std::vector<double> loads;          //!< (n_cases)
-  MatrixD inputs;                     //!< SI, (n_cases, n_inputs)
-  std::vector<field::Mirror> mirrors; ///< declared and switched on; empty: none
+  std::vector<std::string> names;      //!< (n_cases)
+  std::vector<double> loads;           //!< (n_cases)
+  MatrixD inputs;                      //!< SI, (n_cases, n_inputs)
+  std::vector<field::Mirror> mirrors;  ///< declared and switched on; empty: none
   [[nodiscard]] std::size_t n_cases() const { return names.size(); }
 };
 
@@ -39,9 +40,14 @@ struct FitContext {
   int n_threads = 1;
   Log* log = &silent_log();
   std::stop_token stop;
+  const Workers* workers = nullptr;  ///< other processes that train too; may be missing
+
+  /// Trainings that run side by side: each takes one thread, here or in another process.
+  [[nodiscard]] int n_trainings() const { return workers == nullptr ? n_threads : workers->n_units(); }
 };
 
-/// Groups of case rows that leave the training set together in cross-validation (neighbouring loads do not leak).
+/// Groups of case rows that leave the training set together in cross-validation (neighbouring loads do not
+/// leak).
 using Folds = std::vector<std::vector<std::size_t>>;
 
 /// Thread rule: const use from one thread at a time; n_threads of the context is used inside.
@@ -50,11 +56,13 @@ class Method {
   virtual ~Method() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   /// Learns from the rows `cases` of `data` alone.
-  [[nodiscard]] virtual std::unique_ptr<model::FieldModel> fit(const FieldData& data, std::span<const std::size_t> cases,
+  [[nodiscard]] virtual std::unique_ptr<model::FieldModel> fit(const FieldData& data,
+                                                               std::span<const std::size_t> cases,
                                                                const FitContext& context) const = 0;
-  /// Predictions for every case in `folds` by models that did not see its fold, (n_cases, n_cells) with rows of cases
-  /// in no fold left zero. The default fits once a fold; methods with a closed form override it.
-  [[nodiscard]] virtual MatrixF cross_predict(const FieldData& data, const Folds& folds, const FitContext& context) const;
+  /// Predictions for every case in `folds` by models that did not see its fold, (n_cases, n_cells) with rows
+  /// of cases in no fold left zero. The default fits once a fold; methods with a closed form override it.
+  [[nodiscard]] virtual MatrixF cross_predict(const FieldData& data, const Folds& folds,
+                                              const FitContext& context) const;
 };
 
 }  // namespace elrom::study

@@ -6,6 +6,7 @@
 // closed form: ridge on random features, leaving one case out at a time.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <stop_token>
@@ -44,12 +45,28 @@ struct ScreeningResult {
   [[nodiscard]] std::vector<double> column_error() const;
 };
 
+/// What a crew gives back for one of its columns.
+struct ColumnOutcome {
+  std::vector<double>
+      plane_error;   //!< sum of squared errors over the judging records of each plane, (n_planes)
+  double error = 0;  //!< mean squared error over all judging records
+  int epochs = 0;
+};
+
+/// Trains some columns of one build together (a crew): the unit that a screening is cut into.
+using CrewTrainer = std::function<std::vector<ColumnOutcome>(
+    std::size_t i_build, std::span<const std::uint32_t> columns, const std::stop_token& stop)>;
+/// On the calling thread. The arguments must outlive what comes back. Thread rule: call it from any thread.
+[[nodiscard]] CrewTrainer make_crew_trainer(const ScreeningData& data, const ScreenSettings& settings,
+                                            base::Seed seed);
+
 struct ScreeningContext {
   base::Seed seed{1};
   int n_threads = 1;
   Log* log = &silent_log();
   std::stop_token stop;
-  std::string task = "screen";  ///< for progress
+  std::string task = "screen";    ///< for progress
+  CrewTrainer crew_trainer = {};  ///< empty: make_crew_trainer of the screening's own arguments
 };
 
 /// Divergence ends in a large finite error (largest_error), never in NaN. The same seed gives the same bits

@@ -29,6 +29,8 @@ namespace elrom::study {
 /// What a study builds with beside its own methods; filled by the program.
 struct Toolbox {
   std::shared_ptr<const Trainer> trainer;  ///< nullptr: LibTorch was left out of this build
+  const Workers* workers =
+      nullptr;  ///< other processes that train too; may be missing, else outlives the study
 };
 
 /// What a run found for one field.

@@ -1,0 +1,197 @@
+#include "units.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/digest.hpp"
+#include "stage_files.hpp"
+
+namespace elrom::mpi {
+namespace {
+
+using Json = nlohmann::json;
+
+// The matrices of a problem under their names in a message, alike for writing and reading.
+template <class Problem, class Work>
+void for_every_matrix(Problem& problem, const Work& work) {
+  work("train_inputs", problem.train_inputs);
+  work("train_targets", problem.train_targets);
+  work("train_weights", problem.train_weights);
+  work("validation_inputs", problem.validation_inputs);
+  work("validation_targets", problem.validation_targets);
+  work("validation_weights", problem.validation_weights);
+}
+
+Json to_json(const study::ScreenSettings& settings) {
+  return {{"n_units", settings.n_units},
+          {"batch_size", settings.batch_size},
+          {"learning_rate", settings.learning_rate},
+          {"max_epochs", settings.max_epochs},
+          {"patience", settings.patience}};
+}
+
+study::ScreenSettings screen_settings_of(const Json& json) {
+  study::ScreenSettings settings;
+  settings.n_units = json.at("n_units");
+  settings.batch_size = json.at("batch_size");
+  settings.learning_rate = json.at("learning_rate");
+  settings.max_epochs = json.at("max_epochs");
+  settings.patience = json.at("patience");
+  return settings;
+}
+
+}  // namespace
+
+io::TensorFile message(const char* kind) {
+  io::TensorFile message;
+  message.set_text("kind", kind);
+  return message;
+}
+
+io::TensorFile to_message(const TrainUnit& unit) {
+  auto unit_message = study::to_file(unit.hyperparameters, 0);
+  unit_message.set_text("kind", kind::train);
+  unit_message.set_text("unit", Json{{"max_epochs", unit.budget.max_epochs},
+                                     {"patience", unit.budget.patience},
+                                     {"seed", unit.seed.value()},
+                                     {"monitored", unit.monitored},
+                                     {"checkpoint", unit.checkpoint}}
+                                    .dump());
+  return unit_message;
+}
+
+TrainUnit train_unit_of(const io::TensorFile& message) {
+  const auto json = Json::parse(message.text("unit"));
+  return {.hyperparameters = study::hyperparameters_of(message),
+          .budget = {json.at("max_epochs"), json.at("patience")},
+          .seed = base::Seed(json.at("seed").get<std::uint64_t>()),
+          .monitored = json.at("monitored"),
+          .checkpoint = json.at("checkpoint")};
+}
+
+void add_data(io::TensorFile& message, const study::TrainingProblem& problem) {
+  for_every_matrix(problem, [&](const char* name, const MatrixF& matrix) {
+    if (matrix.size() > 0) message.set(name, io::Tensor::copy(matrix));
+  });
+}
+
+bool has_problem(const io::TensorFile& message) { return message.has("train_inputs"); }
+
+study::TrainingProblem problem_of(const io::TensorFile& message) {
+  study::TrainingProblem problem;
+  for_every_matrix(problem, [&](const char* name, MatrixF& matrix) {
+    if (message.has(name)) matrix = message.tensor(name).matrix();
+  });
+  return problem;
+}
+
+std::string digest_of(const study::TrainingProblem& problem) {
+  base::Sha256 sha;
+  for_every_matrix(problem, [&](const char* name, const MatrixF& matrix) {
+    sha.add(name).add_value<std::int64_t>(matrix.rows()).add_value<std::int64_t>(matrix.cols());
+    sha.add(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size()))));
+  });
+  return sha.hex();
+}
+
+io::TensorFile to_message(const CrewUnit& unit) {
+  auto unit_message = message(kind::crew);
+  unit_message.set_text("unit", Json{{"i_build", unit.i_build}, {"columns", unit.columns}}.dump());
+  return unit_message;
+}
+
+CrewUnit crew_unit_of(const io::TensorFile& message) {
+  const auto json = Json::parse(message.text("unit"));
+  return {json.at("i_build"), json.at("columns")};
+}
+
+void add_data(io::TensorFile& message, const study::ScreeningData& data,
+              const study::ScreenSettings& settings, base::Seed seed) {
+  std::vector<std::uint8_t> part;
+  for (const auto of_record : data.part) part.push_back(static_cast<std::uint8_t>(of_record));
+  message.set("inputs", io::Tensor::copy(data.inputs));
+  message.set("targets", io::Tensor::copy(data.targets));
+  message.set("plane", io::Tensor::copy(data.plane, {data.plane.size()}));
+  message.set("case_of", io::Tensor::copy(data.case_of, {data.case_of.size()}));
+  message.set("part", io::Tensor::copy(part, {part.size()}));
+  message.set_text(
+      "screening",
+      Json{{"n_planes", data.n_planes}, {"settings", to_json(settings)}, {"seed", seed.value()}}.dump());
+}
+
+bool has_screening(const io::TensorFile& message) { return message.has_text("screening"); }
+
+std::unique_ptr<const Screening> screening_of(const io::TensorFile& message) {
+  const auto json = Json::parse(message.text("screening"));
+  const auto plane = message.tensor("plane").i32(), case_of = message.tensor("case_of").i32();
+  auto screening = std::make_unique<Screening>();
+  screening->settings = screen_settings_of(json.at("settings"));
+  screening->seed = base::Seed(json.at("seed").get<std::uint64_t>());
+  screening->data = {.inputs = message.tensor("inputs").matrix(),
+                     .targets = message.tensor("targets").matrix(),
+                     .plane = {plane.begin(), plane.end()},
+                     .case_of = {case_of.begin(), case_of.end()},
+                     .part = {},
+                     .n_planes = json.at("n_planes")};
+  for (const auto of_record : message.tensor("part").u8())
+    screening->data.part.push_back(static_cast<study::Part>(of_record));
+  return screening;
+}
+
+io::TensorFile to_message(const study::TrainingResult& result) {
+  auto answer = study::to_file(result);
+  answer.set_text("kind", kind::result);
+  answer.set_text("pruned", result.pruned ? "yes" : "no");
+  answer.set_text("backed_off", result.backed_off ? "yes" : "no");
+  return answer;
+}
+
+study::TrainingResult training_result_of(const io::TensorFile& message) {
+  auto result = study::training_of(message);
+  result.pruned = message.text("pruned") == "yes";
+  result.backed_off = message.text("backed_off") == "yes";
+  return result;
+}
+
+io::TensorFile to_message(const std::vector<study::ColumnOutcome>& outcomes) {
+  const auto n = static_cast<Eigen::Index>(outcomes.size());
+  const auto n_planes = outcomes.empty() ? 0 : static_cast<Eigen::Index>(outcomes.front().plane_error.size());
+  MatrixD plane_error(n, n_planes), rest(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& outcome = outcomes[static_cast<std::size_t>(i)];
+    plane_error.row(i) = Eigen::RowVectorXd::Map(outcome.plane_error.data(), n_planes);
+    rest.row(i) << outcome.error, outcome.epochs;
+  }
+  auto answer = message(kind::result);
+  answer.set("plane_error", io::Tensor::copy(plane_error));
+  answer.set("rest", io::Tensor::copy(rest));
+  return answer;
+}
+
+std::vector<study::ColumnOutcome> outcomes_of(const io::TensorFile& message) {
+  const auto plane_error = message.tensor("plane_error").matrix64(), rest = message.tensor("rest").matrix64();
+  std::vector<study::ColumnOutcome> outcomes;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    const auto* planes = plane_error.row(i).data();
+    outcomes.push_back({.plane_error = {planes, planes + plane_error.cols()},
+                        .error = rest(i, 0),
+                        .epochs = static_cast<int>(rest(i, 1))});
+  }
+  return outcomes;
+}
+
+io::TensorFile failure(ExitStatus status, const std::string& what) {
+  auto answer = message(kind::failure);
+  answer.set_text("status", std::to_string(static_cast<int>(status)));
+  answer.set_text("what", what);
+  return answer;
+}
+
+void rethrow(const io::TensorFile& failure, int rank) {
+  const auto status = static_cast<ExitStatus>(std::stoi(failure.text("status")));
+  const auto what = "rank " + std::to_string(rank) + ": " + failure.text("what");
+  if (status == ExitStatus::numerical) throw NumericalError(what);  // `auto` goes on without the candidate
+  if (status == ExitStatus::interrupted) throw Interrupted(what);
+  throw Error(status, {.what = what});
+}
+
+}  // namespace elrom::mpi
