@@ -312,14 +312,14 @@ const std::vector<EffortRow>& effort_rows() {
   static const std::vector<EffortRow> rows{
       {[](S& s) -> int& { return s.screen.max_epochs; }, {25, 60, 120}},
       {[](S& s) -> int& { return s.screen.patience; }, {3, 6, 10}},
-      {[](S& s) -> int& { return s.search.trials; }, {4, 16, 50}},
-      {[](S& s) -> int& { return s.search.confirm; }, {0, 3, 5}},
+      {[](S& s) -> int& { return s.search.trials; }, {4, 12, 50}},
+      {[](S& s) -> int& { return s.search.confirm; }, {0, 2, 5}},
       {[](S& s) -> int& { return s.search.confirm_seeds; }, {1, 2, 3}},
-      {[](S& s) -> int& { return s.search.max_epochs; }, {15, 40, 120}},
-      {[](S& s) -> int& { return s.search.patience; }, {3, 6, 12}},
-      {[](S& s) -> int& { return s.fit.max_epochs; }, {30, 120, 400}},
-      {[](S& s) -> int& { return s.fit.patience; }, {5, 12, 30}},
-      {[](S& s) -> int& { return s.peers.folds; }, {4, 6, 10}},
+      {[](S& s) -> int& { return s.search.max_epochs; }, {15, 24, 120}},
+      {[](S& s) -> int& { return s.search.patience; }, {3, 4, 12}},
+      {[](S& s) -> int& { return s.fit.max_epochs; }, {30, 60, 400}},
+      {[](S& s) -> int& { return s.fit.patience; }, {5, 8, 30}},
+      {[](S& s) -> int& { return s.peers.folds; }, {4, 5, 10}},
   };
   return rows;
 }
