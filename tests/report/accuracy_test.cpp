@@ -156,6 +156,21 @@ TEST_F(Accuracy, PageEscapesNamesFromOutside) {
   EXPECT_THAT(page, HasSubstr("a &amp; &quot;b&quot;"));
 }
 
+TEST_F(Accuracy, PageShowsTheSearch) {
+  study::TrialStore::Search search{.digest = "d", .name = "pressure, 0 to 0.1", .trials = {}};
+  for (int i = 0; i < 6; ++i)
+    search.trials.push_back(
+        {.hyperparameters = {.n_units = 16 << i}, .value = 0.5 - 0.05 * i, .epochs = 10, .rungs = {}});
+
+  const auto page = html_page(*report_, {.searches = {search}});
+
+  EXPECT_THAT(page, HasSubstr("6 trials in one search."));
+  EXPECT_THAT(page, HasSubstr("History of pressure, 0 to 0.1"));
+  EXPECT_THAT(page, HasSubstr("Importance of hyperparameters"));
+  EXPECT_THAT(page, HasSubstr("Slice: units"));
+  EXPECT_THAT(page, Not(HasSubstr("Slice: layers"))) << "one value is no slice";
+}
+
 TEST_F(Accuracy, AnUntrainedDirectoryIsRefusedWithTheCommandThatTrainsIt) {
   const auto empty = folder("untrained");
   std::filesystem::create_directories(empty);

@@ -67,10 +67,10 @@ struct Dimension {
 };
 const std::vector<Dimension>& dimensions() {
   static const std::vector<Dimension> all{
-      {"learning rate", [](const study::Hyperparameters& h) { return std::log(h.learning_rate); }},
+      {"learning rate", [](const study::Hyperparameters& h) { return h.learning_rate; }},
       {"layers", [](const study::Hyperparameters& h) { return double(h.n_layers); }},
-      {"units", [](const study::Hyperparameters& h) { return std::log(double(h.n_units)); }},
-      {"batch size", [](const study::Hyperparameters& h) { return std::log(double(h.batch_size)); }},
+      {"units", [](const study::Hyperparameters& h) { return double(h.n_units); }},
+      {"batch size", [](const study::Hyperparameters& h) { return double(h.batch_size); }},
       {"weight decay", [](const study::Hyperparameters& h) { return h.weight_decay; }},
       {"dropout", [](const study::Hyperparameters& h) { return h.dropout; }}};
   return all;
@@ -128,6 +128,27 @@ std::string importance_chart(const std::vector<study::TrialStore::Search>& searc
   return rows.empty() ? ""
                       : svg::bars(rows, "mean absolute rank correlation with the validation error",
                                   "Importance of hyperparameters", 640);
+}
+
+// Every trial at its value of one hyperparameter. Searches differ in how hard their columns are, so an error
+// counts in units of the best of its search.
+std::string slice_chart(const Dimension& dimension, const std::vector<study::TrialStore::Search>& searches) {
+  std::vector<double> x, y;
+  for (const auto& search : searches) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const auto& trial : search.trials)
+      if (!trial.pruned && !trial.diverged) best = std::min(best, trial.value);
+    for (const auto& trial : search.trials) {
+      if (trial.i_seed != 0 || trial.diverged || !(best > 0) || !std::isfinite(best)) continue;
+      x.push_back(dimension.value(trial.hyperparameters));
+      y.push_back(trial.value / best);
+    }
+  }
+  if (x.empty() || *std::min_element(x.begin(), x.end()) == *std::max_element(x.begin(), x.end())) return "";
+  svg::Chart chart({.width = 330, .height = 230, .left = 60}, svg::fit_axis(dimension.name, x, 0.7),
+                   svg::fit_axis("error / best of its search", y, 0.5), "Slice: " + dimension.name);
+  chart.points(x, y, "s0", dimension.name + ", error / best");
+  return figure(dimension.name, chart.text());
 }
 
 }  // namespace
@@ -207,11 +228,19 @@ std::string search_section(const std::vector<study::TrialStore::Search>& searche
     n_trials += searches[i].trials.size();
     if (i < most_shown) charts += history_chart(searches[i]);
   }
+  std::string slices;
+  for (const auto& dimension : dimensions()) slices += slice_chart(dimension, searches);
+  const auto grid = [](const std::string& figures) {
+    return "<div class=\"grid3\" style=\"margin-top:18px\">" + figures + "</div>";
+  };
   return section(
       "search", "Search for hyperparameters",
-      fmt::format("{} trials in {} searches; the first {} are drawn.", n_trials, searches.size(),
-                  std::min(most_shown, searches.size())),
-      importance_chart(searches) + "<div class=\"grid3\" style=\"margin-top:18px\">" + charts + "</div>");
+      fmt::format(
+          "{} trials in {} searches. First what matters, then every trial at its value of each "
+          "hyperparameter, then the history of {}.",
+          n_trials, searches.size() == 1 ? "one search" : fmt::format("{} searches", searches.size()),
+          searches.size() > most_shown ? fmt::format("the first {} searches", most_shown) : "every search"),
+      importance_chart(searches) + grid(slices) + grid(charts));
 }
 
 }  // namespace elrom::report
