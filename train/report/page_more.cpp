@@ -236,7 +236,7 @@ std::string search_section(const std::vector<study::TrialStore::Search>& searche
   return section(
       "search", "Search for hyperparameters",
       fmt::format(
-          "{} trials in {} searches. First what matters, then every trial at its value of each "
+          "{} trials in {}. First what matters, then every trial at its value of each "
           "hyperparameter, then the history of {}.",
           n_trials, searches.size() == 1 ? "one search" : fmt::format("{} searches", searches.size()),
           searches.size() > most_shown ? fmt::format("the first {} searches", most_shown) : "every search"),
