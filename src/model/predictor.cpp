@@ -108,13 +108,14 @@ struct Predictor::Impl {
   std::vector<Bounds> bounds;
   mutable std::vector<std::unique_ptr<FieldModel>> models;
   mutable std::vector<std::unique_ptr<Uncertainty>> uncertainty;
-  mutable std::vector<float> quantiles;             //!< of the asked level, (n_fields)
-  mutable std::unique_ptr<std::once_flag[]> loaded;  //!< guards the three above, (n_fields)
+  mutable std::vector<float> quantiles;           //!< of the asked level, (n_fields)
+  mutable std::unique_ptr<std::mutex[]> loading;  //!< guards the three above, (n_fields)
   std::vector<Unit> serial_units;
 
   Impl(BundleReader reader, Selection wanted);
   void load(std::size_t i_field) const;
   void read(std::size_t i_field) const;
+  void read_uncertainty(std::size_t i_field, double level) const;
   void compute(const Unit& unit, std::span<const double> inputs, std::span<float> values,
                std::span<float> half_width, Workspace& workspace) const;
 };
@@ -127,7 +128,7 @@ Predictor::Impl::Impl(BundleReader reader, Selection wanted)
       models(fields.size()),
       uncertainty(fields.size()),
       quantiles(fields.size(), 0.0F),
-      loaded(std::make_unique<std::once_flag[]>(fields.size())),
+      loading(std::make_unique<std::mutex[]>(fields.size())),
       serial_units(units_for(fields.size(), planes.size(), 1)) {
   guard = bundle.guard();
   for (const auto& info : fields) bounds.emplace_back(info);
@@ -135,21 +136,29 @@ Predictor::Impl::Impl(BundleReader reader, Selection wanted)
   base::parallel_for(fields.size(), selection.n_threads, [&](std::size_t i, int) { load(i); });
 }
 
+/// No std::call_once: an error thrown inside would pass the C library's frames, which a program with a static
+/// unwinder does not survive.
 void Predictor::Impl::load(std::size_t i_field) const {
-  std::call_once(loaded[i_field], [&] { read(i_field); });
+  const std::scoped_lock lock(loading[i_field]);
+  if (!models[i_field]) read(i_field);
 }
 
 void Predictor::Impl::read(std::size_t i_field) const {
   const auto& name = fields[i_field].name;
-  models[i_field] = bundle.model(name, {selection.planes, selection.best_build_only});
-  if (!selection.interval_level) return;
+  auto model = bundle.model(name, {selection.planes, selection.best_build_only});
+  if (selection.interval_level) read_uncertainty(i_field, *selection.interval_level);
+  models[i_field] = std::move(model);  // last: it says that all is there
+}
+
+void Predictor::Impl::read_uncertainty(std::size_t i_field, double level) const {
+  const auto& name = fields[i_field].name;
   uncertainty[i_field] = bundle.uncertainty(name);
   if (!uncertainty[i_field]) {
     throw UsageError({.what = "no prediction intervals for field '" + name + "'",
                       .where = bundle.file().where(),
                       .advice = "train with more cases, or leave out the level"});
   }
-  quantiles[i_field] = static_cast<float>(uncertainty[i_field]->quantile(*selection.interval_level));
+  quantiles[i_field] = static_cast<float>(uncertainty[i_field]->quantile(level));
 }
 
 void Predictor::Impl::compute(const Unit& unit, std::span<const double> inputs, std::span<float> values,
@@ -168,7 +177,13 @@ void Predictor::Impl::compute(const Unit& unit, std::span<const double> inputs, 
   const auto width = half_width.subspan(first, n);
   uncertainty[unit.i_field]->scale(asked, width);
   const auto factor = static_cast<float>(quantiles[unit.i_field] * uncertainty[unit.i_field]->factor(inputs));
-  for (float& value : width) value *= factor;
+  bool finite = true;
+  for (float& value : width) {
+    value *= factor;
+    finite &= std::abs(value) <= std::numeric_limits<float>::max();
+  }
+  if (!finite)
+    throw NumericalError({.what = "interval is not finite", .where = "field " + fields[unit.i_field].name});
 }
 
 Predictor::Predictor(BundleReader bundle, Selection selection)

@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "elrom/base/text.hpp"
 #include "elrom/io/hdf5.hpp"
+#include "elrom/io/tensor_file.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -63,6 +65,26 @@ class ProgramTest : public ::testing::Test {
     return names;
   }
 };
+
+TEST_F(ProgramTest, RefusesABundleWithAChangedByteInAModel) {
+  const auto path = folder_ / "model.elrom";
+  auto bytes = test::read_bytes(path);
+  {
+    const auto file = io::TensorFile::open(path);
+    const auto weights = std::ranges::find_if(
+        file.tensors(), [](const auto& tensor) { return tensor.first.ends_with("/layer0/weights"); });
+    const auto values = weights->second.bytes();
+    bytes[bytes.find({reinterpret_cast<const char*>(values.data()), values.size()})] ^= 1;
+  }
+  test::write_bytes(path, bytes);
+
+  for (const std::string threads : {"1", "2"}) {
+    const auto outcome = predict(output("out") + " --threads " + threads);
+
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_THAT(outcome.text, HasSubstr("/layer0/weights: found"));
+  }
+}
 
 TEST_F(ProgramTest, WritesOneFileACaseAndNothingElse) {
   const auto outcome = predict(output("out"));
