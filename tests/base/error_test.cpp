@@ -22,6 +22,17 @@ TEST(Problem, LeavesOutWhatIsEmpty) {
             "no cases: expected at least 2");
 }
 
+TEST(Problem, ShowsTheBeginningOfWhatWasFoundInOneLine) {
+  EXPECT_EQ((Problem{.what = "no unit", .found = "a\n\x1b[2Jb"}.message()), "no unit: found a??[2Jb");
+  const std::string most(300, 'x');
+  EXPECT_EQ((Problem{.what = "no unit", .found = most}.message()), "no unit: found " + most);
+  EXPECT_EQ((Problem{.what = "no unit", .found = std::string(100000, 'x')}.message()),
+            "no unit: found " + most + "... (100000 bytes)");
+  // 299 letters and a letter of two bytes: it is left out whole.
+  EXPECT_EQ((Problem{.what = "no unit", .found = std::string(299, 'x') + "\u00b0C"}.message()),
+            "no unit: found " + std::string(299, 'x') + "... (302 bytes)");
+}
+
 TEST(Error, CarriesTheExitStatusOfItsKind) {
   EXPECT_EQ(InputError("x").status(), ExitStatus::input);
   EXPECT_EQ(UsageError("x").status(), ExitStatus::usage);

@@ -27,7 +27,7 @@ enum class ExitStatus : int {
 struct Problem {
   std::string what;
   std::string where = {};  ///< file:dataset, file:line, field ...
-  std::string found = {};
+  std::string found = {};  ///< shown without control characters, and only its beginning when it is long
   std::string expected = {};
   std::string advice = {};
 
