@@ -8,6 +8,7 @@
 #include "elrom/math/ridge.hpp"
 #include "elrom/model/pod_model.hpp"
 #include "elrom/study/cross_validation.hpp"
+#include "support/recording_log.hpp"
 
 namespace elrom::study {
 namespace {
@@ -120,7 +121,12 @@ TEST(PodMlp, ABuildThatDivergedIsLeftOut) {
   const LinearField field;
   const auto rows = field.rows(25);
 
-  EXPECT_NO_THROW((void)make_pod_mlp(std::make_shared<RidgeTrainer>(4))->fit(field.data, rows, {}));
+  test::RecordingLog log;
+
+  EXPECT_NO_THROW(
+      (void)make_pod_mlp(std::make_shared<RidgeTrainer>(4))->fit(field.data, rows, {.log = &log}));
+
+  EXPECT_THAT(log.text(), ::testing::HasSubstr("pod_mlp, pressure, build 3 diverged and is lost"));
   EXPECT_THROW((void)make_pod_mlp(std::make_shared<RidgeTrainer>(5))->fit(field.data, rows, {}),
                NumericalError);
 }

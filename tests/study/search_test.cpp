@@ -8,6 +8,7 @@
 
 #include "../../train/study/proposals.hpp"
 #include "elrom/base/error.hpp"
+#include "support/recording_log.hpp"
 
 namespace elrom::study {
 namespace {
@@ -84,9 +85,12 @@ TEST_P(EveryAlgorithm, SameSeedSameWinner) {
 TEST_P(EveryAlgorithm, DivergedTrialsLose) {
   FakeTrainer trainer;
   trainer.diverges = true;
+  test::RecordingLog log;
 
-  const auto result = run(trainer, settings_for(GetParam(), 30));
+  const auto result = run(trainer, settings_for(GetParam(), 30), {.name = "pressure", .log = &log});
 
+  EXPECT_THAT(log.text(),
+              ::testing::MatchesRegex("search pressure: [0-9]+ of 36 trainings diverged and are lost\n"));
   EXPECT_LE(result.best.learning_rate, 1e-3);
   EXPECT_TRUE(std::isfinite(result.validation_mse));
 }

@@ -209,8 +209,10 @@ std::vector<model::Submodel> NetworksMethod::build(const FieldData& data, const 
         const auto file = cache_->get("build", name, unit_digest, [&] {
           const auto seed =
               context.seed.derive("fit").derive(field).derive(plan.bands[i_band].name).derive(i_build);
-          return to_file(trainer_->train(problems[i_band], plan.hyperparameters[i_band], budget, seed,
-                                         nullptr, context.stop, checkpoint));
+          const auto trained = trainer_->train(problems[i_band], plan.hyperparameters[i_band], budget, seed,
+                                               nullptr, context.stop, checkpoint);
+          tell_divergence(trained, name, *context.log);
+          return to_file(trained);
         });
         if (!checkpoint.empty()) std::filesystem::remove(checkpoint);
         results[i_band][i_build] = training_of(file);

@@ -174,6 +174,8 @@ class PodMlp final : public Method {
           const TrainingProblem problem = make_problem(table, snapshots, folds[b % folds.size()]);
           results[b] = trainer_->train(problem, options_.hyperparameters, options_.budget, seed.derive(b),
                                        nullptr, context.stop);
+          tell_divergence(results[b], name() + ", " + data.info.name + ", build " + std::to_string(b),
+                          *context.log);
           if (!results[b].diverged) residuals[b] = squared_residuals(results[b].network, problem);
         },
         context.stop);

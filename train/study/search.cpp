@@ -93,6 +93,7 @@ class Searcher {
     propose(settings_.algorithm, space_.n_dimensions(), space_.initial_step(), n_trials,
             context_.seed.derive("propose"), [this](std::span<const double> point) { return ask(point); });
     confirm();
+    tell_lost();
     return std::move(result_);
   }
 
@@ -146,6 +147,13 @@ class Searcher {
     context_.log->progress({"search " + context_.name, static_cast<std::int64_t>(values_.size()),
                             settings_.trials, "trials",
                             incumbent_ < HUGE_VAL ? base::rounded(incumbent_) : std::string()});
+  }
+
+  void tell_lost() const {
+    const auto n_lost = std::ranges::count_if(result_.trials, &Trial::diverged);
+    if (n_lost == 0) return;
+    context_.log->info(fmt::format("search {}: {} of {} trainings diverged and are lost", context_.name,
+                                   n_lost, result_.trials.size()));
   }
 
   // Trials that ended by themselves, best first; a diverged one only when there is no other.

@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <string>
 
+#include "elrom/base/log.hpp"
 #include "elrom/base/random.hpp"
 #include "elrom/math/matrix.hpp"
 #include "elrom/model/network.hpp"
@@ -56,6 +57,9 @@ struct TrainingResult {
   bool backed_off =
       false;  ///< after a first such loss it was begun again at a tenth of the rate: tell the user
 };
+
+/// Warns when a training diverged: it is lost, or was begun again at a tenth of its rate.
+void tell_divergence(const TrainingResult& result, const std::string& network, Log& log);
 
 /// Thread rule: train() may run on several threads at a time; each call uses one thread.
 class Trainer {
