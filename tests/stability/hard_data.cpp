@@ -1,6 +1,8 @@
 #include "hard_data.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 namespace elrom::stability {
@@ -24,6 +26,9 @@ HardData healthy(const std::string& name, const std::string& description, const 
   data.cases.mesh = field::make_furnace_mesh({}, size.n_x, size.n_y, size.n_planes);
   data.cases.schema = schema();
   data.fields = {field::field_info("gas_velocity_z"), field::field_info("solid_volume_fraction")};
+  data.cases.mirrors = {
+      field::resolve({.name = "left-right", .axis = 'x', .complement = {"return_left_fraction"}},
+                     data.cases.schema, data.cases.mesh)};
   base::Random random(base::Seed(7).derive(name));
   const auto n = static_cast<Eigen::Index>(size.n_cases),
              n_cells = static_cast<Eigen::Index>(data.cases.mesh.n_cells());
@@ -49,8 +54,26 @@ HardData changed(HardData data, const std::function<void(HardData&)>& change) {
   return data;
 }
 
+/// Inputs of the shipped training cases, as many cases of them as shipped.
+HardData shipped_inputs() {
+  const auto path = std::filesystem::path(ELROM_SOURCE_DIR) / "data/cases/cases.csv";
+  const auto schema = field::read_schema(path);
+  const auto cases = field::read_cases(path, schema);
+  auto data = healthy("shipped_inputs", "the 26 inputs of the shipped cases", {.n_cases = cases.size()});
+  data.cases.schema = schema;
+  data.cases.mirrors.clear();
+  data.cases.inputs.resize(static_cast<Eigen::Index>(cases.size()), static_cast<Eigen::Index>(schema.size()));
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    std::copy(cases[i].values.begin(), cases[i].values.end(),
+              data.cases.inputs.row(static_cast<Eigen::Index>(i)).begin());
+  }
+  data.corners_are_outside = true;
+  return data;
+}
+
 void add_degenerate_shapes(std::vector<HardData>& all) {
   all.push_back(healthy("healthy", "nothing hard: shows that the others fail for their own reason"));
+  all.push_back(shipped_inputs());
   all.push_back(healthy("one_plane", "a mesh of one plane", {.n_planes = 1}));
   all.push_back(healthy("one_column", "a mesh of one column", {.n_x = 1, .n_y = 1}));
   all.push_back(healthy("one_cell", "a mesh of a single cell", {.n_x = 1, .n_y = 1, .n_planes = 1}));

@@ -8,11 +8,18 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/field/symmetry.hpp"
 #include "elrom/model/bundle.hpp"
+#include "elrom/model/composite_models.hpp"
 #include "elrom/model/predictor.hpp"
 #include "elrom/study/kernel_method.hpp"
 #include "elrom/study/networks_method.hpp"
 #include "elrom/study/peers.hpp"
+#include "elrom/study/pod_mlp.hpp"
+#include "support/recording_log.hpp"
+#if ELROM_HAS_TORCH
+#include "elrom/torch/trainer.hpp"
+#endif
 
 namespace elrom::stability {
 namespace {
@@ -109,17 +116,93 @@ std::string screen(const HardData& data, const std::string& method) {
   return {};
 }
 
-struct NamedMethod {
+using Fit =
+    std::function<std::unique_ptr<model::FieldModel>(const study::FieldData&, const study::FitContext&)>;
+
+std::unique_ptr<model::FieldModel> fit_with(const study::Method& method, const study::FieldData& data,
+                                            const study::FitContext& context) {
+  std::vector<std::size_t> rows(data.cases->n_cases());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  return method.fit(data, rows, context);
+}
+
+Fit fit_by(std::shared_ptr<const study::Method> method) {
+  return [method = std::move(method)](const study::FieldData& data, const study::FitContext& context) {
+    return fit_with(*method, data, context);
+  };
+}
+
+std::unique_ptr<model::FieldModel> fit_blend(const study::FieldData& data, const study::FitContext& context) {
+  std::vector<model::BlendModel::Part> parts;
+  for (const std::string name : {"linear", "pod_rbf"})
+    parts.push_back({0.5, fit_with(*study::make_peer(name), data, context)});
+  return std::make_unique<model::BlendModel>(std::move(parts));
+}
+
+std::unique_ptr<model::FieldModel> fit_mirror(const study::FieldData& data,
+                                              const study::FitContext& context) {
+  const auto& cases = *data.cases;
+  return std::make_unique<model::MirrorModel>(
+      fit_with(*study::make_peer("pod_gp"), data, context),
+      field::symmetry_group(cases.mirrors, cases.schema.size(), cases.mesh.n_cells()), data.info.parity,
+      cases.mesh.n_planes);
+}
+
+#if ELROM_HAS_TORCH
+std::shared_ptr<const study::Method> networks(const study::Settings& settings) {
+  return std::make_shared<study::NetworksMethod>(settings, torch::make_torch_trainer());
+}
+
+/// Rates of which some diverge: those trials lose, and that is told.
+std::unique_ptr<model::FieldModel> fit_diverging_search(const study::FieldData& data,
+                                                        const study::FitContext& context) {
+  auto settings = tiny_settings();
+  settings.search.learning_rate = {1e-20, 1e20};
+  settings.search.trials = 6;
+  test::RecordingLog log;
+  auto listened = context;
+  listened.log = &log;
+  auto model = fit_with(*networks(settings), data, listened);
+  if (log.text().find("diverged and are lost") == std::string::npos)
+    throw std::runtime_error("lost trials were not told");
+  return model;
+}
+
+/// Rates that leave nothing to win with.
+std::unique_ptr<model::FieldModel> fit_diverging(const study::FieldData& data,
+                                                 const study::FitContext& context) {
+  auto settings = tiny_settings();
+  settings.search.learning_rate = {1e29, 1e30};
+  (void)fit_with(*networks(settings), data, context);
+  throw std::runtime_error("networks that diverged were taken");
+}
+#endif
+
+struct NamedFit {
   std::string stage;
-  std::unique_ptr<study::Method> method;
+  Fit fit;
 };
 
-/// Every method that needs no trainer.
-std::vector<NamedMethod> all_methods() {
-  std::vector<NamedMethod> methods;
-  for (const auto& name : study::peer_names()) methods.push_back({name, study::make_peer(name)});
-  methods.push_back({"kernel", study::make_kernel_method()});
-  return methods;
+/// Every method, and every kind of model that is made of others.
+std::vector<NamedFit> all_fits() {
+  std::vector<NamedFit> fits;
+  for (const auto& name : study::peer_names()) fits.push_back({name, fit_by(study::make_peer(name))});
+  fits.push_back({"kernel", fit_by(study::make_kernel_method())});
+  fits.push_back({"blend", fit_blend});
+  fits.push_back({"mirror", fit_mirror});
+#if ELROM_HAS_TORCH
+  fits.push_back({"networks", fit_by(networks(tiny_settings()))});
+  auto averaged = tiny_settings();
+  averaged.networks.average = true;
+  averaged.bands.scope = "plane";
+  fits.push_back({"networks_averaged", fit_by(networks(averaged))});
+  fits.push_back(
+      {"pod_mlp", fit_by(study::make_pod_mlp(torch::make_torch_trainer(),
+                                             {.builds = 2, .budget = {20, 10}, .mirrors = true}))});
+  fits.push_back({"diverging_search", fit_diverging_search});
+  fits.push_back({"diverging_fit", fit_diverging});
+#endif
+  return fits;
 }
 
 std::string wrong_values(const std::vector<float>& values, const std::vector<field::FieldInfo>& fields) {
@@ -133,75 +216,123 @@ std::string wrong_values(const std::vector<float>& values, const std::vector<fie
   return {};
 }
 
-std::string fit_and_predict(const HardData& data, const study::Method& method, const fs::path& path) {
+std::string wrong_widths(const std::vector<float>& widths) {
+  const auto good = [](float width) { return std::isfinite(width) && width >= 0; };
+  return std::all_of(widths.begin(), widths.end(), good) ? "" : "the half-width of an interval is not finite";
+}
+
+std::string fit_and_predict(const HardData& data, const std::string& stage, const Fit& fit,
+                            const fs::path& path) {
   model::Bundle bundle;
-  bundle.info.method = method.name();
+  bundle.info.method = stage;
   bundle.info.fields = data.fields;
   bundle.info.schema = data.cases.schema;
   bundle.info.cases = data.cases.names;
   bundle.mesh = data.cases.mesh;
   bundle.guard = model::Guard(data.cases.schema, data.cases.inputs, data.cases.names, data.cases.loads);
-  std::vector<std::size_t> rows(data.cases.n_cases());
-  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  model::Selection selection;
   for (std::size_t f = 0; f < data.fields.size(); ++f) {
     const study::FieldData field{&data.cases, data.fields[f], data.values[f]};
-    bundle.models[data.fields[f].name] = method.fit(field, rows, {});
+    bundle.models[data.fields[f].name] = fit(field, {});
+    if (data.cases.n_cases() < 3) continue;  // too few for an interval
+    selection.interval_level = 0.5;
+    const MatrixF residuals = data.values[f].rowwise() - data.values[f].row(0);
+    bundle.uncertainty[data.fields[f].name] =
+        std::make_shared<model::Uncertainty>(residuals, data.cases.mesh.n_columns, data.cases.inputs);
   }
   bundle.write(path);
 
-  const model::Predictor predictor(path);
+  const model::Predictor predictor(path, selection);
   model::Predictor::Scratch scratch;
-  std::vector<float> values(predictor.size());
+  std::vector<float> values(predictor.size()), widths(selection.interval_level ? predictor.size() : 0);
   const auto complaint_on = [&](const MatrixD& queries) -> std::string {
     for (Eigen::Index i = 0; i < queries.rows(); ++i) {
       const std::vector<double> inputs(queries.row(i).begin(), queries.row(i).end());
-      predictor.predict(inputs, values, {}, scratch);
+      predictor.predict(inputs, values, widths, scratch);
       if (auto wrong = wrong_values(values, predictor.fields()); !wrong.empty()) return wrong;
+      if (auto wrong = wrong_widths(widths); !wrong.empty()) return wrong;
     }
     return {};
   };
   if (auto wrong = complaint_on(data.cases.inputs); !wrong.empty()) return wrong + " at a training case";
+  if (auto wrong = complaint_on(box_corners(data.cases.inputs)); !wrong.empty())
+    return wrong + " in a corner";
   if (auto wrong = complaint_on(far_queries(data.cases.inputs)); !wrong.empty())
     return wrong + " far outside";
   return {};
 }
 
-/// The guard must call every far query outside, and no training case.
+/// The guard must call every far query outside, and every corner of a box that the cases hardly fill.
 std::string guard(const HardData& data) {
   const model::Guard guard(data.cases.schema, data.cases.inputs, data.cases.names, data.cases.loads);
-  const auto far = far_queries(data.cases.inputs);
-  for (Eigen::Index i = 0; i < far.rows(); ++i) {
-    const std::vector<double> inputs(far.row(i).begin(), far.row(i).end());
-    const auto assessment = guard.assess(inputs);
-    if (assessment.verdict != model::Verdict::outside)
-      return "far query " + std::to_string(i) + " is not called outside";
-    if (!std::isfinite(assessment.distance) || assessment.reason.empty())
-      return "an assessment without distance or reason";
-  }
-  return {};
+  const auto complaint_on = [&](const MatrixD& queries, const std::string& name) -> std::string {
+    for (Eigen::Index i = 0; i < queries.rows(); ++i) {
+      const std::vector<double> inputs(queries.row(i).begin(), queries.row(i).end());
+      const auto assessment = guard.assess(inputs);
+      if (assessment.verdict != model::Verdict::outside)
+        return name + " " + std::to_string(i) + " is not called outside";
+      if (!std::isfinite(assessment.distance) || assessment.reason.empty())
+        return "an assessment without distance or reason";
+    }
+    return {};
+  };
+  if (auto wrong = complaint_on(far_queries(data.cases.inputs), "far query"); !wrong.empty()) return wrong;
+  return data.corners_are_outside ? complaint_on(box_corners(data.cases.inputs), "corner") : "";
 }
 
 }  // namespace
 
+namespace {
+
+constexpr Eigen::Index n_corners = 64;
+
+struct Box {
+  Eigen::RowVectorXd low, high, range;
+
+  explicit Box(const MatrixD& inputs) : low(inputs.colwise().minCoeff()), high(inputs.colwise().maxCoeff()) {
+    // An input that never changed still has a size by which it can be wrong.
+    const Eigen::RowVectorXd middle = 0.5 * low + 0.5 * high;
+    range = (high - low).cwiseMax(0.1 * middle.cwiseAbs()).cwiseMax(1e-12);
+  }
+  /// A corner of the box that reaches so many ranges further in every direction.
+  [[nodiscard]] Eigen::RowVectorXd corner(double beyond, base::Random& random) const {
+    Eigen::RowVectorXd point(low.size());
+    for (Eigen::Index k = 0; k < low.size(); ++k)
+      point[k] = random.below(2) == 0 ? low[k] - beyond * range[k] : high[k] + beyond * range[k];
+    return point;
+  }
+};
+
+}  // namespace
+
+MatrixD box_corners(const MatrixD& inputs) {
+  const Box box(inputs);
+  base::Random random(base::Seed(11).derive("box"));
+  MatrixD corners(n_corners, inputs.cols());
+  for (Eigen::Index i = 0; i < n_corners; ++i) corners.row(i) = box.corner(0, random);
+  return corners;
+}
+
 MatrixD far_queries(const MatrixD& inputs) {
-  constexpr Eigen::Index n_corners = 64;
-  const Eigen::RowVectorXd low = inputs.colwise().minCoeff(), high = inputs.colwise().maxCoeff();
-  const Eigen::RowVectorXd middle = 0.5 * low + 0.5 * high;
-  // An input that never changed still has a size by which it can be wrong.
-  const Eigen::RowVectorXd range = (high - low).cwiseMax(0.1 * middle.cwiseAbs()).cwiseMax(1e-12);
-  MatrixD queries(n_corners + 5, inputs.cols());
+  const Box box(inputs);
+  const Eigen::RowVectorXd size = box.high.cwiseAbs().cwiseMax(1);
   base::Random random(base::Seed(11).derive("corners"));
-  for (Eigen::Index i = 0; i < n_corners; ++i) {
-    for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
-      queries(i, k) = random.below(2) == 0 ? low(k) - 10 * range(k) : high(k) + 10 * range(k);
+  std::vector<Eigen::RowVectorXd> queries;
+  for (Eigen::Index i = 0; i < n_corners; ++i) queries.push_back(box.corner(10, random));
+  for (Eigen::Index i = 0; i < n_corners; ++i) queries.push_back(box.corner(random.uniform(0.2, 10), random));
+  for (Eigen::Index k = 0; k < inputs.cols(); ++k) {  // one input alone
+    for (const double beyond : {-10.0, -1.0, 1.0, 10.0}) {
+      queries.push_back(inputs.row(0));
+      queries.back()[k] = (beyond < 0 ? box.low : box.high)[k] + beyond * box.range[k];
     }
   }
-  queries.row(n_corners) = low - 10 * range;
-  queries.row(n_corners + 1) = high + 10 * range;
-  queries.row(n_corners + 2) = -10 * high.cwiseAbs().cwiseMax(1);
-  queries.row(n_corners + 3) = 1e6 * high.cwiseAbs().cwiseMax(1);
-  queries.row(n_corners + 4).setConstant(1e300);
-  return queries;
+  queries.insert(queries.end(), {box.low - 10 * box.range, box.high + 10 * box.range,
+                                 Eigen::RowVectorXd::Zero(inputs.cols()), -10 * size, 1e6 * size,
+                                 Eigen::RowVectorXd::Constant(inputs.cols(), 1e300),
+                                 Eigen::RowVectorXd::Constant(inputs.cols(), -1e300)});
+  MatrixD rows(static_cast<Eigen::Index>(queries.size()), inputs.cols());
+  for (std::size_t i = 0; i < queries.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = queries[i];
+  return rows;
 }
 
 std::vector<Outcome> send_through(const HardData& data, const fs::path& folder) {
@@ -216,10 +347,10 @@ std::vector<Outcome> send_through(const HardData& data, const fs::path& folder) 
   for (const std::string method : {"fast", "networks"}) {
     outcomes.push_back(attempt(data, "screen_" + method, [&] { return screen(data, method); }));
   }
-  for (const auto& [stage, method] : all_methods()) {
-    const auto path = folder / (data.name + "_" + stage + ".elrom");
+  for (const auto& one : all_fits()) {
+    const auto path = folder / (data.name + "_" + one.stage + ".elrom");
     outcomes.push_back(
-        attempt(data, stage, [&, &model = *method] { return fit_and_predict(data, model, path); }));
+        attempt(data, one.stage, [&] { return fit_and_predict(data, one.stage, one.fit, path); }));
   }
   return outcomes;
 }

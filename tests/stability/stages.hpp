@@ -20,8 +20,11 @@ struct Outcome {
 /// @param folder for files
 [[nodiscard]] std::vector<Outcome> send_through(const HardData& data, const std::filesystem::path& folder);
 
-/// Inputs that nobody should ask for: ten ranges beyond the trained box, its corners (sampled), zeros, 1e6
-/// times the largest, 1e300. (n_queries, n_inputs)
+/// Corners of the trained box (a sample): each input in its range, hardly ever a case. (n_corners, n_inputs)
+[[nodiscard]] MatrixD box_corners(const MatrixD& inputs);
+
+/// Inputs that nobody should ask for: all of them, or one alone, up to ten ranges beyond the trained box;
+/// zeros; 1e6 times the largest; 1e300. (n_queries, n_inputs)
 [[nodiscard]] MatrixD far_queries(const MatrixD& inputs);
 
 }  // namespace elrom::stability
