@@ -37,8 +37,11 @@ struct Workshop {
   [[nodiscard]] std::vector<std::string> case_files(std::size_t n, std::size_t first = 0) const;
   [[nodiscard]] std::vector<std::string> import_command(const std::filesystem::path& store,
                                                         const std::vector<std::string>& files) const;
-  /// A study with a store of n_cases on a coarse mesh; networks are left out so that it trains in a second.
-  void make_study(const std::filesystem::path& study, std::size_t n_cases) const;
+  /// A study with a store of n_cases on a coarse mesh. @param settings its study.toml; as it is, networks are
+  /// left out so that it trains in a second
+  void make_study(
+      const std::filesystem::path& study, std::size_t n_cases,
+      const std::string& settings = "method = \"pod_gp\"\neffort = \"quick\"\nseed = 5\nthreads = 1\n") const;
   [[nodiscard]] std::vector<std::string> train_command(const std::filesystem::path& study) const;
   [[nodiscard]] std::vector<std::string> predict_command(const std::filesystem::path& bundle,
                                                          const std::filesystem::path& output) const;
@@ -47,6 +50,9 @@ struct Workshop {
 /// kill -9 at random moments of import, training and prediction; afterwards old or new state, and the next
 /// run ends.
 Tally kills(const Workshop& workshop);
+/// kill -9 at random moments of a training of networks, again and again until it ends: its bundle is byte for
+/// byte that of a run left alone, and so are its trials.
+Tally network_kills(const Workshop& workshop);
 /// Bundles, stores and exports cut at many lengths are refused with exit status 3 or an InputError.
 Tally truncations(const Workshop& workshop);
 /// Every byte of a bundle, changed, is found by its digests.
@@ -55,8 +61,8 @@ Tally flipped_bytes(const Workshop& workshop);
 Tally unit_mistakes(const Workshop& workshop);
 /// The table of tests/stability.
 Tally hard_cases(const Workshop& workshop);
-/// The n-th write, truncation, fsync or rename fails (full disk, broken disk), or a write is short; afterwards
-/// old or new state, and no program dies by a signal.
+/// The n-th write, truncation, fsync or rename fails (full disk, broken disk), or a write is short;
+/// afterwards old or new state, and no program dies by a signal.
 Tally failing_writes(const Workshop& workshop);
 /// The same when the n-th allocation fails.
 Tally failing_allocations(const Workshop& workshop);

@@ -1,10 +1,11 @@
 #include <csignal>
-#include <thread>
 
 #include "campaign.hpp"
 #include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
 #include "elrom/io/hdf5.hpp"
-#include "elrom/model/predictor.hpp"
+#include "elrom/io/tensor_file.hpp"
+#include "elrom/study/search.hpp"
 #include "process.hpp"
 
 namespace elrom::faults {
@@ -12,12 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Starts the command and kills it at a random moment of `seconds`. @return whether it was still at work
+/// Starts the command and kills it at a random moment of `seconds`. @return false when it ended before
 bool kill_at_random(const std::vector<std::string>& command, double seconds, base::Random& random) {
-  Process process(command);
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds * random.uniform(0.0, 1.1)));
-  process.kill(SIGKILL);
-  return process.wait().signal == SIGKILL;
+  return Process(command).wait(random.uniform(0.0, seconds)).signal == SIGKILL;
 }
 
 bool predictions_whole(const fs::path& folder) {
@@ -55,7 +53,7 @@ void kill_imports(const Workshop& shop, std::size_t n, base::Random& random, Tal
     const bool adding = i % 2 == 1;
     fs::remove(store);
     if (adding) fs::copy_file(whole, store);
-    kill_at_random(shop.import_command(store, adding ? more : first), seconds, random);
+    kill_at_random(shop.import_command(store, adding ? more : first), 1.1 * seconds, random);
     const long state = store_state(store);
     const bool known = adding ? state == 8 || state == 12 : state == -1 || state == 8;
     tally.count(known, "import: a store in state " + std::to_string(state));
@@ -66,6 +64,14 @@ void kill_imports(const Workshop& shop, std::size_t n, base::Random& random, Tal
   }
 }
 
+/// A study of the same store and settings in which nothing is done yet.
+void begin_anew(const fs::path& whole, const fs::path& study) {
+  fs::remove_all(study);
+  fs::create_directories(study);
+  fs::copy_file(whole / "snapshots.h5", study / "snapshots.h5");
+  fs::copy_file(whole / "study.toml", study / "study.toml");
+}
+
 void kill_trainings(const Workshop& shop, std::size_t n, base::Random& random, Tally& tally) {
   const auto whole = shop.folder / "study_whole", study = shop.folder / "study_killed";
   shop.make_study(whole, 12);
@@ -73,13 +79,8 @@ void kill_trainings(const Workshop& shop, std::size_t n, base::Random& random, T
   if (trained.status != 0) throw std::runtime_error("cannot train: " + trained.output);
   const auto wanted = base::sha256_file(whole / "model.elrom");
   for (std::size_t i = 0; i < n; ++i) {
-    if (i % 5 == 0) {  // five kills in a row through one study
-      fs::remove_all(study);
-      fs::create_directories(study);
-      fs::copy_file(whole / "snapshots.h5", study / "snapshots.h5");
-      fs::copy_file(whole / "study.toml", study / "study.toml");
-    }
-    kill_at_random(shop.train_command(study), trained.seconds, random);
+    if (i % 5 == 0) begin_anew(whole, study);  // five kills in a row through one study
+    kill_at_random(shop.train_command(study), 1.1 * trained.seconds, random);
     const bool absent = !fs::exists(study / "model.elrom");
     tally.count(absent || bundle_whole(study / "model.elrom"), "training: a broken bundle");
     if (i % 5 != 4 && i + 1 != n) continue;
@@ -97,14 +98,81 @@ void kill_predictions(const Workshop& shop, std::size_t n, base::Random& random,
   const double seconds = run(command).seconds;
   for (std::size_t i = 0; i < n; ++i) {
     if (i % 2 == 0) fs::remove_all(output);  // and every other time over older predictions
-    kill_at_random(command, seconds, random);
+    kill_at_random(command, 1.1 * seconds, random);
     tally.count(predictions_whole(output), "prediction: a broken file");
   }
   const auto again = run(command);
   tally.count(again.status == 0 && predictions_whole(output), "prediction after kills: " + again.output);
 }
 
+/// What every trial of a study's searches was worth.
+std::map<std::string, double> trials_of(const fs::path& study) {
+  std::map<std::string, double> values;
+  for (const auto& search : study::TrialStore(study / "search.sqlite").searches()) {
+    for (const auto& trial : search.trials) {
+      values[search.digest + " " + study::SearchSpace::key(trial.hyperparameters) + " " +
+             std::to_string(trial.i_seed)] = trial.value;
+    }
+  }
+  return values;
+}
+
+/// Two fields, screened, banded, searched and built by networks of a few epochs: every stage of a training,
+/// in seconds.
+constexpr const char* network_settings = R"(
+method = "networks"
+effort = "quick"
+seed = 5
+threads = 2
+[fields]
+names = ["gas_velocity_z", "pressure"]
+[screen]
+builds = 2
+max_epochs = 5
+[search]
+trials = 6
+confirm = 2
+confirm_seeds = 1
+max_epochs = 6
+n_units = [8, 16]
+[fit]
+builds = 2
+max_epochs = 8
+[peers]
+methods = ["linear"]
+folds = 3
+)";
+
 }  // namespace
+
+Tally network_kills(const Workshop& shop) {
+  Tally tally;
+  base::Random random(shop.seed.derive("network kills"));
+  const auto whole = shop.folder / "networks_whole", study = shop.folder / "networks_killed";
+  shop.make_study(whole, 24, network_settings);
+  const auto trained = run(shop.train_command(whole));
+  if (trained.status == static_cast<int>(ExitStatus::not_built)) {
+    tally.skipped = "this build has no LibTorch";
+    return tally;
+  }
+  if (trained.status != 0) throw std::runtime_error("cannot train networks: " + trained.output);
+  const auto wanted = base::sha256_file(whole / "model.elrom");
+  const auto wanted_trials = trials_of(whole);
+  // Kills through one study until a run ends by itself, and through as many studies as that takes.
+  for (std::size_t n_kills = 0, n = shop.times(50, 5); n_kills < n;) {
+    begin_anew(whole, study);
+    while (n_kills < n && kill_at_random(shop.train_command(study), trained.seconds / 2, random)) {
+      ++n_kills;
+      const bool absent = !fs::exists(study / "model.elrom");
+      tally.count(absent || bundle_whole(study / "model.elrom"), "networks: a broken bundle");
+    }
+    const auto again = run(shop.train_command(study));
+    tally.count(again.status == 0 && base::sha256_file(study / "model.elrom") == wanted,
+                "networks after kills: another bundle than without, or none: " + again.output);
+    tally.count(trials_of(study) == wanted_trials, "networks after kills: other trials than without");
+  }
+  return tally;
+}
 
 Tally kills(const Workshop& workshop) {
   Tally tally;

@@ -35,11 +35,12 @@ std::vector<std::string> Workshop::import_command(const std::filesystem::path& s
   return command;
 }
 
-void Workshop::make_study(const std::filesystem::path& study, std::size_t n_cases) const {
+void Workshop::make_study(const std::filesystem::path& study, std::size_t n_cases,
+                          const std::string& settings) const {
   std::filesystem::create_directories(study);
   const auto exit = run(import_command(study / "snapshots.h5", case_files(n_cases)));
   if (exit.status != 0) throw std::runtime_error("cannot make a study: " + exit.output);
-  base::write_text(study / "study.toml", "method = \"pod_gp\"\neffort = \"quick\"\nseed = 5\nthreads = 1\n");
+  base::write_text(study / "study.toml", settings);
 }
 
 std::vector<std::string> Workshop::train_command(const std::filesystem::path& study) const {
