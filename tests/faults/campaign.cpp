@@ -21,6 +21,7 @@ namespace {
 struct Section {
   std::string key, what;
   std::function<Tally(const Workshop&)> run;
+  [[nodiscard]] bool fuzzes() const { return key == "fuzz" || key == "libfuzzer"; }
 };
 
 const std::vector<Section>& sections() {
@@ -36,6 +37,7 @@ const std::vector<Section>& sections() {
       {"disk_full", "a full disk leaves old or new state", disk_full},
       {"two_at_once", "two programs on one store or study; readers meanwhile", two_at_once},
       {"fuzz", "hostile bundles, tables and cases are refused", fuzz_inputs},
+      {"libfuzzer", "the same by libFuzzer, with sanitizers and limits of time and memory", fuzz_programs},
   };
   return all;
 }
@@ -46,6 +48,8 @@ void print(const Section& section, const Tally& tally) {
   } else {
     fmt::print("{:<20}{} of {}  {}\n", section.key, tally.passed, tally.of, section.what);
   }
+  for (const auto& [library, n] : tally.died_in)
+    fmt::print("    {} of them died inside {}, with every file as before or complete\n", n, library);
   for (const auto& failure : tally.failures) fmt::print("    {}\n", failure);
   std::fflush(stdout);
 }
@@ -63,14 +67,20 @@ int run_campaign(Workshop shop, const std::vector<std::string>& only, const std:
   field::write_mesh(shop.mesh(), field::make_furnace_mesh({}, 5, 6, 8));
   nlohmann::ordered_json report{{"small", shop.small}};
   bool good = true;
+  Tally inputs;
   for (const auto& section : sections()) {
     if (!only.empty() && std::find(only.begin(), only.end(), section.key) == only.end()) continue;
     const auto tally = section.run(shop);
     print(section, tally);
     good = good && good_enough(section, tally);
     report[section.key] = {{"passed", tally.passed}, {"of", tally.of}};
+    if (!tally.died_in.empty()) report[section.key]["died_in_library"] = tally.died_in;
     if (!tally.skipped.empty()) report[section.key]["skipped"] = tally.skipped;
-    if (section.key == "fuzz") report["fuzz_inputs"] = tally.of;
+    if (section.fuzzes()) inputs.count(tally.passed, tally.of, {});
+  }
+  if (inputs.of > 0) {
+    print({"fuzz_inputs", "of all fuzzers together", {}}, inputs);
+    report["fuzz_inputs"] = inputs.passed;
   }
   if (!json.empty()) base::write_text(json, report.dump(2) + "\n");
   return good ? 0 : 1;
@@ -85,9 +95,13 @@ int main(int argc, char** argv) {
   shop.programs = ELROM_BIN_DIR;
   shop.preload = ELROM_PRELOAD;
   shop.source = ELROM_SOURCE_DIR;
+  shop.fuzzers = shop.source / "build/fuzz/tests";
   std::string json;
   std::vector<std::string> only;
   app.add_flag("--small", shop.small, "A short version: about a minute");
+  app.add_option("--fuzz-inputs", shop.n_fuzz,
+                 "Inputs for libFuzzer's programs: ten million, 20000 with --small");
+  app.add_option("--fuzzers", shop.fuzzers, "Folder of libFuzzer's programs (cmake --preset fuzz)");
   app.add_option("--json", json, "Write the tallies to this file")->type_name("FILE");
   app.add_option("--only", only, "Only these sections (kills, truncations ...)")->delimiter(',');
   try {
@@ -95,6 +109,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(elrom::ExitStatus::usage);
   }
+  if (shop.n_fuzz == 0) shop.n_fuzz = shop.times(10'000'000, 20'000);
   return elrom::base::run_app("fault_campaign",
                               [&] { return elrom::faults::run_campaign(shop, only, json); });
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,13 @@ struct Tally {
   std::size_t passed = 0, of = 0;
   std::vector<std::string> failures;  ///< what went wrong, one line each (the first few)
   std::string skipped;                ///< why nothing was done; empty: it was
+  std::map<std::string, std::size_t>
+      died_in;  ///< programs among the passed that a library took along, by library
 
   /// @param failure what to say when it did not pass
   void count(bool good, const std::string& failure);
+  /// As many at once, of which so many passed.
+  void count(std::size_t n_good, std::size_t n, const std::string& failure);
   [[nodiscard]] bool clean() const { return passed == of; }
 };
 
@@ -27,6 +32,8 @@ struct Workshop {
   std::filesystem::path preload;   ///< failing_calls library
   std::filesystem::path source;    ///< the repository
   std::filesystem::path folder;    ///< for files
+  std::filesystem::path fuzzers;   ///< folder of libFuzzer's programs; need not exist
+  std::size_t n_fuzz = 0;          ///< inputs for them
   bool small = false;
   base::Seed seed{20231};
 
@@ -74,5 +81,7 @@ Tally two_at_once(const Workshop& workshop);
 /// The state of a store after trouble: its cases when it opens and reads whole, -1 when it is not there, -2
 /// when broken.
 [[nodiscard]] long store_state(const std::filesystem::path& store);
+/// Every prediction in a folder, which need not exist, opens and reads whole.
+[[nodiscard]] bool predictions_whole(const std::filesystem::path& folder);
 
 }  // namespace elrom::faults

@@ -1,10 +1,14 @@
 #include "fuzz_inputs.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 
 #include "elrom/base/child_process.hpp"
 #include "elrom/base/error.hpp"
 #include "fuzz_targets.hpp"
+#include "process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::faults {
 namespace {
@@ -52,7 +56,65 @@ void run_inputs(const FuzzTarget& target, const std::vector<std::string>& seeds,
   }
 }
 
+/// What one program gets: tiny bundles are tried most, because a thousand of them cost no more than a large
+/// one.
+struct Share {
+  std::string target;
+  std::size_t per_thousand;
+  std::size_t most_bytes;
+};
+
+const std::vector<Share>& shares() {
+  static const std::vector<Share> all = {{"bundle", 900, 700},        {"bundle", 20, 12000},
+                                         {"bundle_content", 20, 400}, {"cases_csv", 15, 1000},
+                                         {"cases_json", 15, 1000},    {"cases_toml", 10, 1000},
+                                         {"fluent_ascii", 10, 1000},  {"foam", 10, 1000}};
+  return all;
+}
+
+/// Inputs that libFuzzer says it tried.
+std::size_t tried_inputs(const std::string& output) {
+  const std::string mark = "stat::number_of_executed_units:";
+  const auto found = output.rfind(mark);
+  return found == std::string::npos ? 0 : std::stoul(output.substr(found + mark.size()));
+}
+
+std::filesystem::path write_seeds(const std::string& target, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  int n = 0;
+  for (const auto& seed : seeds_of(target)) test::write_bytes(folder / std::to_string(n++), seed);
+  return folder;
+}
+
 }  // namespace
+
+Tally fuzz_programs(const Workshop& shop) {
+  Tally tally;
+  for (const auto& share : shares()) {
+    const auto program = shop.fuzzers / ("fuzz_" + share.target);
+    if (!std::filesystem::exists(program)) {
+      tally.skipped = "not built: cmake --preset fuzz && cmake --build --preset fuzz --target fuzz-programs";
+      return tally;
+    }
+    const std::size_t n = shop.n_fuzz * share.per_thousand / 1000;
+    const auto harm = std::filesystem::current_path() / ("fuzz-" + share.target + "-");
+    const auto folder = shop.folder / ("seeds_" + share.target + std::to_string(share.most_bytes));
+    // An input may take a minute of wall-clock time, for the machine may be busy; the program itself counts
+    // processor time.
+    Process process({program.string(), "-runs=" + std::to_string(n),
+                     "-max_len=" + std::to_string(share.most_bytes),
+                     "-seed=" + std::to_string(shop.seed.value() % 1'000'000'007), "-timeout=60",
+                     "-malloc_limit_mb=64", "-entropic=0", "-reduce_inputs=0", "-print_final_stats=1",
+                     "-artifact_prefix=" + harm.string(), write_seeds(share.target, folder).string()});
+    const auto exit = process.wait(300 + static_cast<double>(n) / 100);
+    const auto n_tried = tried_inputs(exit.output);
+    const bool clean = exit.status == 0 && n_tried >= n;
+    tally.count(clean ? n : std::min(n_tried, n - 1), n,
+                share.target + ": " +
+                    exit.output.substr(exit.output.size() - std::min<std::size_t>(exit.output.size(), 2000)));
+  }
+  return tally;
+}
 
 Tally fuzz_inputs(const Workshop& shop) {
   Tally tally;

@@ -66,23 +66,23 @@ const std::vector<FuzzTarget>& fuzz_targets() {
 }
 
 std::vector<std::string> seeds_of(const std::string& target) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(corpus_folder() / target))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  namespace fs = std::filesystem;
   std::vector<std::string> seeds;
-  for (const auto& path : files) seeds.push_back(test::read_bytes(path));
+  if (target == "bundle") {
+    const auto path = memory_folder() / "seed.elrom";
+    const auto add = [&](const auto& bundle) {
+      bundle.write(path);
+      seeds.push_back(test::read_bytes(path));
+    };
+    add(tiny_bundle());
+    for (const auto& [name, bundle] : small_bundles()) add(bundle);
+  }
+  std::vector<fs::path> files;
+  const auto corpus = fs::path(ELROM_SOURCE_DIR) / "tests/faults/corpus" / target;
+  if (fs::exists(corpus)) files.assign(fs::directory_iterator(corpus), fs::directory_iterator());
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) seeds.push_back(test::read_bytes(file));
   return seeds;
-}
-
-void write_bundle_seeds() {
-  for (const auto& [name, bundle] : small_bundles())
-    bundle.write(corpus_folder() / "bundle" / (name + ".elrom"));
-  tiny_bundle().write(corpus_folder() / "bundle" / "tiny.elrom");
-}
-
-std::filesystem::path corpus_folder() {
-  return std::filesystem::path(ELROM_SOURCE_DIR) / "tests/faults/corpus";
 }
 
 }  // namespace elrom::faults

@@ -22,10 +22,8 @@ struct FuzzTarget {
 /// the input), cases_csv, cases_json, cases_toml, fluent_ascii, foam.
 [[nodiscard]] const std::vector<FuzzTarget>& fuzz_targets();
 
-/// Small inputs to start from, and inputs that once did harm: the files of tests/faults/corpus/<target>.
+/// Small inputs to start from, and inputs that once did harm: the files of tests/faults/corpus/<target>;
+/// bundles are made anew, of every kind, in the format of the day.
 [[nodiscard]] std::vector<std::string> seeds_of(const std::string& target);
-[[nodiscard]] std::filesystem::path corpus_folder();
-/// Makes the corpus' good bundles anew: when their format has changed.
-void write_bundle_seeds();
 
 }  // namespace elrom::faults

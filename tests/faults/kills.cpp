@@ -18,22 +18,6 @@ bool kill_at_random(const std::vector<std::string>& command, double seconds, bas
   return Process(command).wait(random.uniform(0.0, seconds)).signal == SIGKILL;
 }
 
-bool predictions_whole(const fs::path& folder) {
-  if (!fs::exists(folder)) return true;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != ".hdf") continue;
-    try {
-      const auto file = io::Hdf5File::open(entry.path());
-      for (const auto& name : file.group("elrom/fields").names()) {
-        (void)file.dataset("elrom/fields/" + name).read<float>();
-      }
-    } catch (const std::exception&) {
-      return false;
-    }
-  }
-  return true;
-}
-
 bool bundle_whole(const fs::path& path) {
   try {
     io::TensorFile::open(path).verify_all();
@@ -144,6 +128,22 @@ folds = 3
 )";
 
 }  // namespace
+
+bool predictions_whole(const fs::path& folder) {
+  if (!fs::exists(folder)) return true;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".hdf") continue;
+    try {
+      const auto file = io::Hdf5File::open(entry.path());
+      for (const auto& name : file.group("elrom/fields").names()) {
+        (void)file.dataset("elrom/fields/" + name).read<float>();
+      }
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+  return true;
+}
 
 Tally network_kills(const Workshop& shop) {
   Tally tally;

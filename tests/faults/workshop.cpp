@@ -7,13 +7,12 @@
 
 namespace elrom::faults {
 
-void Tally::count(bool good, const std::string& failure) {
-  ++of;
-  if (good) {
-    ++passed;
-  } else if (failures.size() < 10) {
-    failures.push_back(failure);
-  }
+void Tally::count(bool good, const std::string& failure) { count(std::size_t{good ? 1U : 0U}, 1, failure); }
+
+void Tally::count(std::size_t n_good, std::size_t n, const std::string& failure) {
+  of += n;
+  passed += n_good;
+  if (n_good < n && failures.size() < 10) failures.push_back(failure);
 }
 
 std::vector<std::string> Workshop::case_files(std::size_t n, std::size_t first) const {
