@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <system_error>
 #include <thread>
 
 #include "elrom/base/error.hpp"
@@ -38,6 +40,10 @@ int run_app(std::string_view program, const std::function<int()>& body) noexcept
     return report(program, error.what(), error.status());
   } catch (const std::bad_alloc&) {
     return report(program, "out of memory; ask for fewer fields, cases or builds at a time",
+                  ExitStatus::internal);
+  } catch (const std::system_error& error) {
+    const bool exhausted = error.code() == std::errc::resource_unavailable_try_again;
+    return report(program, std::string(error.what()) + (exhausted ? "; no more threads or memory" : ""),
                   ExitStatus::internal);
   } catch (const std::exception& error) {
     return report(program, error.what(), ExitStatus::internal);

@@ -1,14 +1,26 @@
 #include "hdf5_internal.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 namespace elrom::io::detail {
 
+namespace {
+
+/// The library does not survive its own start when memory runs out there; so we find that out first.
+bool enough_memory_to_start() {
+  constexpr std::size_t more_than_it_takes = std::size_t{4} << 20;
+  ::operator delete(::operator new(more_than_it_takes));
+  return true;
+}
+
+}  // namespace
+
 void quiet() {
   // Every file is closed by its owner. The library's own clearing-up at exit would crash on a file that could
   // not be written (a full disk), after the error has been told.
-  static const bool no_exit_handler = H5dont_atexit() >= 0;
+  static const bool no_exit_handler = enough_memory_to_start() && H5dont_atexit() >= 0;
   (void)no_exit_handler;
   thread_local const bool done = (H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), true);
   (void)done;
