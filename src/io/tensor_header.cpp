@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t most_tensors = 1'000'000;
+constexpr std::size_t most_tensors = 16'384;
 constexpr std::size_t most_dimensions = 8;
 
 std::optional<DType> dtype_of(std::string_view name) {
@@ -120,7 +120,7 @@ class HeaderReader final : public nlohmann::json_sax<Json> {
       return true;
     }
     if (seen_ != 7) return fail("tensor '" + name_ + "' without dtype, shape or data_offsets");
-    if (header.tensors.size() >= most_tensors) return fail("more than a million tensors");
+    if (header.tensors.size() >= most_tensors) return fail("more than " + std::to_string(most_tensors) + " tensors");
     return header.tensors.emplace(name_, std::move(entry_)).second || fail("tensor '" + name_ + "' twice");
   }
 

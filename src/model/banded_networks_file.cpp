@@ -7,6 +7,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/model/banded_networks.hpp"
+#include "model_parts.hpp"
 
 namespace elrom::model {
 namespace {
@@ -63,10 +64,10 @@ Submodel load_submodel(const io::TensorFile& file, const std::string& prefix, co
     const auto mask = file.tensor(prefix + "/mask", std::array{n_planes, columns.size()}).u8();
     submodel.mask.assign(mask.begin(), mask.end());
   }
-  const bool answers =
-      wanted.planes.empty() || std::any_of(wanted.planes.begin(), wanted.planes.end(), [&](std::int32_t plane) {
-        return submodel.answers(static_cast<std::size_t>(plane));
-      });
+  const bool answers = wanted.planes.empty() ||
+                       std::any_of(wanted.planes.begin(), wanted.planes.end(), [&](std::int32_t plane) {
+                         return submodel.answers(static_cast<std::size_t>(plane));
+                       });
   if (!answers) return submodel;
   const auto n_builds = size_of(description, "builds");
   if (submodel.scores.size() != n_builds)
@@ -137,9 +138,9 @@ void BandedNetworks::save(io::TensorFile& file, const std::string& prefix) const
 }
 
 std::unique_ptr<FieldModel> BandedNetworks::load(const io::TensorFile& file, const std::string& prefix,
-                                             const Wanted& wanted) {
+                                                 const Wanted& wanted) {
   try {
-    return std::make_unique<BandedNetworks>(load_parts(file, prefix, Json::parse(file.text(prefix)), wanted));
+    return std::make_unique<BandedNetworks>(load_parts(file, prefix, parse_json(file.text(prefix)), wanted));
   } catch (const Json::exception& error) {
     throw InputError(
         {"unreadable description of a networks model", file.where() + ":" + prefix, error.what()});

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/error.hpp"
+#include "model_parts.hpp"
 
 namespace elrom::model {
 namespace {
@@ -74,7 +75,7 @@ std::string to_json(const BundleDescription& description) {
 
 BundleDescription bundle_description(const std::string& text, const std::string& where) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text);
     BundleDescription description;
     auto& info = description.info;
     info.method = json.at("method").get<std::string>();

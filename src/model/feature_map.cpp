@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "elrom/base/error.hpp"
+#include "model_parts.hpp"
 
 namespace elrom::model {
 
@@ -123,7 +124,7 @@ void FeatureMap::save(io::TensorFile& file, const std::string& key) const {
 
 FeatureMap FeatureMap::load(const io::TensorFile& file, const std::string& key) {
   try {
-    const Json json = Json::parse(file.text(key));
+    const Json json = parse_json(file.text(key));
     std::vector<Feature> features;
     for (const Json& entry : json.at("features")) {
       Feature feature{entry.at("name").get<std::string>(), {}};

@@ -7,12 +7,13 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "model_kinds.hpp"
+#include "model_parts.hpp"
 
 namespace elrom::model {
 
 std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file, const std::string& prefix,
                                              const Wanted& wanted) {
-  const auto description = nlohmann::json::parse(file.text(prefix), nullptr, false);
+  const auto description = parse_json(file.text(prefix), false);
   if (!description.is_object() || !description.contains("kind") || !description["kind"].is_string()) {
     throw InputError({.what = "no description of a model",
                       .where = file.where() + ":" + prefix,

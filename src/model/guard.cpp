@@ -9,6 +9,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
+#include "model_parts.hpp"
 
 namespace elrom::model {
 namespace {
@@ -191,7 +192,7 @@ void Guard::save(io::TensorFile& file, const std::string& prefix) const {
 }
 
 Guard Guard::load(const io::TensorFile& file, const std::string& prefix, const field::InputSchema& schema) {
-  const auto description = nlohmann::json::parse(file.text(prefix), nullptr, false);
+  const auto description = parse_json(file.text(prefix), false);
   const std::string where = file.where() + ":" + prefix;
   if (!description.is_object() || !description.value("cases", nlohmann::json()).is_array()) {
     throw InputError(

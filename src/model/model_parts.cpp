@@ -6,8 +6,22 @@
 
 namespace elrom::model {
 
+nlohmann::json parse_json(const std::string& text, bool with_exceptions) {
+  constexpr int most_depth = 16;
+  constexpr std::size_t most_values = 100'000;
+  std::size_t n = 0;
+  const auto within_limits = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    if (depth <= most_depth && ++n <= most_values) return true;
+    throw InputError({.what = "JSON text out of all proportion",
+                      .expected = "at most " + std::to_string(most_values) + " values, " +
+                                  std::to_string(most_depth) + " deep",
+                      .advice = "the file is damaged or was made to do harm"});
+  };
+  return nlohmann::json::parse(text, within_limits, with_exceptions);
+}
+
 nlohmann::json read_description(const io::TensorFile& file, const std::string& prefix) {
-  auto description = nlohmann::json::parse(file.text(prefix), nullptr, false);
+  auto description = parse_json(file.text(prefix), false);
   if (!description.is_object()) {
     throw InputError({.what = "no description of a model",
                       .where = file.where() + ":" + prefix,

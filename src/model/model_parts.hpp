@@ -21,6 +21,10 @@ namespace elrom::model {
   return {first, n};
 }
 
+/// nlohmann::json::parse for texts of a bundle, which may be made to do harm: a document costs up to fifty
+/// times its text. @throws InputError for more values, or deeper ones, than any bundle of ours holds
+[[nodiscard]] nlohmann::json parse_json(const std::string& text, bool with_exceptions = true);
+
 /// The JSON object under `prefix`. @throws InputError naming file and key
 [[nodiscard]] nlohmann::json read_description(const io::TensorFile& file, const std::string& prefix);
 /// A text of the description. @throws InputError when it is missing or no text

@@ -8,6 +8,7 @@
 #include "dense_kernel.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "model_parts.hpp"
 
 namespace elrom::model {
 namespace {
@@ -17,12 +18,6 @@ constexpr std::size_t block_rows = 5 * lane;
 
 constexpr std::array<std::pair<std::string_view, Activation>, 3> activations{
     {{"relu", Activation::relu}, {"tanh", Activation::tanh}, {"silu", Activation::silu}}};
-
-std::string shape_text(const io::Tensor& tensor) {
-  std::vector<std::string> sizes;
-  for (const auto size : tensor.shape()) sizes.push_back(std::to_string(size));
-  return "(" + base::join(sizes, ", ") + ")";
-}
 
 void require(bool fits, std::size_t i_layer, const std::string& found, const std::string& expected) {
   if (!fits)
@@ -163,7 +158,7 @@ void Network::save(io::TensorFile& file, const std::string& prefix) const {
 }
 
 Network Network::load(const io::TensorFile& file, const std::string& prefix) {
-  const auto description = nlohmann::json::parse(file.text(prefix), nullptr, false);
+  const auto description = parse_json(file.text(prefix), false);
   const bool readable = description.is_object() && description.contains("activation") &&
                         description["activation"].is_string() && description.contains("layers") &&
                         description["layers"].is_number_unsigned();
