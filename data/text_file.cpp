@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "elrom/base/error.hpp"
 
@@ -17,13 +18,14 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t most_b
   // zlib passes files that are not gzip through unchanged.
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) throw InputError({.what = "cannot open file", .where = path.string()});
-  gzbuffer(file.get(), 1u << 18);
+  std::vector<char> block(std::size_t{1} << 16);
+  gzbuffer(file.get(), static_cast<unsigned>(block.size()));
   std::string text;
+  std::error_code unknown;  // the size of a pipe
+  const auto size = std::filesystem::file_size(path, unknown);
+  if (!unknown) text.reserve(std::min<std::size_t>(size, most_bytes));
   for (;;) {
-    constexpr std::size_t block = std::size_t{1} << 20;
-    const std::size_t before = text.size();
-    text.resize(before + block);
-    const int got = gzread(file.get(), text.data() + before, static_cast<unsigned>(block));
+    const int got = gzread(file.get(), block.data(), static_cast<unsigned>(block.size()));
     int fault = Z_OK;
     const char* reason = gzerror(file.get(), &fault);
     if (got < 0 || (fault != Z_OK && fault != Z_STREAM_END)) {
@@ -31,7 +33,7 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t most_b
                         .where = path.string(),
                         .found = std::string("a damaged or truncated gzip stream (") + reason + ")"});
     }
-    text.resize(before + static_cast<std::size_t>(got));
+    text.append(block.data(), static_cast<std::size_t>(got));
     if (text.size() > most_bytes) {
       throw InputError({.what = "text is too large",
                         .where = path.string(),

@@ -1,6 +1,6 @@
 #include "cases_tree.hpp"
 
-#include <toml++/toml.h>
+#include "elrom/io/toml.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 // One row a setting: key, meaning, how it is read from TOML and written back. Internal to settings*.cpp.
 
-#include <toml++/toml.h>
+#include "elrom/io/toml.hpp"
 
 #include <functional>
 #include <string>
