@@ -2,6 +2,7 @@
 
 #include "campaign.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/io/tensor_file.hpp"
 #include "elrom/model/predictor.hpp"
 #include "process.hpp"
 
@@ -75,6 +76,36 @@ void cut_for_program(const fs::path& whole, const std::string& name, std::size_t
   }
 }
 
+/// Places of the fields' tensors in a bundle: what every prediction reads.
+std::vector<std::size_t> field_bytes(const fs::path& bundle, const std::string& bytes) {
+  std::vector<std::size_t> places;
+  const auto file = io::TensorFile::open(bundle);
+  for (const auto& [name, tensor] : file.tensors()) {
+    const std::string_view content(reinterpret_cast<const char*>(tensor.bytes().data()),
+                                   tensor.bytes().size());
+    if (!name.starts_with("fields/")) continue;
+    const auto begin = bytes.find(content);
+    for (std::size_t i = 0; i < content.size(); ++i) places.push_back(begin + i);
+  }
+  return places;
+}
+
+/// The same for the program, whose threads and runtime are its own: exit status 3, never a signal.
+void flip_for_program(const Workshop& shop, std::string bytes, base::Random& random, Tally& tally) {
+  const auto path = shop.folder / "flipped.elrom";
+  const auto places = field_bytes(small_bundle(shop), bytes);
+  for (std::size_t i = 0; i < shop.times(300, 20); ++i) {
+    const auto at = places[random.below(places.size())];
+    auto changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    write_bytes(path, changed);
+    const auto exit = run(shop.predict_command(path, shop.folder / "flipped_predictions"));
+    tally.count(exit.status == static_cast<int>(ExitStatus::input),
+                "elrom-predict, byte " + std::to_string(at) + ": status " + std::to_string(exit.status) +
+                    ", signal " + std::to_string(exit.signal) + ", " + exit.output);
+  }
+}
+
 }  // namespace
 
 Tally truncations(const Workshop& shop) {
@@ -121,6 +152,7 @@ Tally flipped_bytes(const Workshop& shop) {
                 "byte " + std::to_string(i) + ": " + (complaint.empty() ? "not found" : complaint));
     bytes[i] = before;
   }
+  flip_for_program(shop, bytes, random, tally);
   return tally;
 }
 
