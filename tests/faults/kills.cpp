@@ -161,7 +161,7 @@ Tally network_kills(const Workshop& shop) {
   // Kills through one study until a run ends by itself, and through as many studies as that takes.
   for (std::size_t n_kills = 0, n = shop.times(50, 5); n_kills < n;) {
     begin_anew(whole, study);
-    while (n_kills < n && kill_at_random(shop.train_command(study), trained.seconds / 2, random)) {
+    while (n_kills < n && kill_at_random(shop.train_command(study), trained.seconds, random)) {
       ++n_kills;
       const bool absent = !fs::exists(study / "model.elrom");
       tally.count(absent || bundle_whole(study / "model.elrom"), "networks: a broken bundle");
