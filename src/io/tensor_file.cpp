@@ -1,6 +1,7 @@
 #include "elrom/io/tensor_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -105,7 +106,15 @@ TensorFile TensorFile::open(const std::filesystem::path& path, Verify verify) {
 
 const Tensor& TensorFile::tensor(std::string_view name) const {
   const Tensor& found = find(name);
-  if (verify_ == Verify::on_use) compare(name, found);
+  if (verify_ == Verify::on_use) compare(std::array{std::string(name)}, std::span(&found, 1));
+  return found;
+}
+
+std::vector<Tensor> TensorFile::tensors(std::span<const std::string> names) const {
+  std::vector<Tensor> found;
+  found.reserve(names.size());
+  for (const auto& name : names) found.push_back(find(name));
+  if (verify_ == Verify::on_use) compare(names, found);
   return found;
 }
 
@@ -155,14 +164,25 @@ void TensorFile::set_text(std::string key, std::string text) {
   texts_.insert_or_assign(std::move(key), std::move(text));
 }
 
-void TensorFile::verify(std::string_view name) const { compare(name, find(name)); }
+void TensorFile::verify(std::string_view name) const {
+  const Tensor& found = find(name);
+  compare(std::array{std::string(name)}, std::span(&found, 1));
+}
 
-void TensorFile::compare(std::string_view name, const Tensor& tensor) const {
-  const auto stored = digests_.find(std::string(name));
-  if (stored == digests_.end()) return;  // made in memory: nothing to compare with
-  const auto found = base::sha256(tensor.bytes());
-  if (found != stored->second) {
-    refuse(where_ + ":" + std::string(name), "tensor does not match its SHA-256", found, stored->second);
+void TensorFile::compare(std::span<const std::string> names, std::span<const Tensor> tensors) const {
+  std::vector<const std::string*> stored, name_of;
+  std::vector<std::span<const std::byte>> bytes;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto digest = digests_.find(names[i]);
+    if (digest == digests_.end()) continue;  // made in memory: nothing to compare with
+    stored.push_back(&digest->second);
+    name_of.push_back(&names[i]);
+    bytes.push_back(tensors[i].bytes());
+  }
+  const auto found = base::sha256_of_each(bytes);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] != *stored[i])
+      refuse(where_ + ":" + *name_of[i], "tensor does not match its SHA-256", found[i], *stored[i]);
   }
 }
 

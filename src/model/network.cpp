@@ -165,12 +165,17 @@ Network Network::load(const io::TensorFile& file, const std::string& prefix) {
   if (!readable)
     throw InputError({"unreadable network", file.where() + ":" + prefix, file.text(prefix),
                       R"(JSON such as {"activation": "relu", "layers": 3})"});
-  std::vector<Layer> layers;
   const auto n_layers = description["layers"].get<std::size_t>();
+  std::vector<std::string> names;
   for (std::size_t i = 0; i < n_layers; ++i) {
     const std::string layer = prefix + "/layer" + std::to_string(i);
-    layers.push_back({file.tensor(layer + "/weights"), file.tensor(layer + "/bias")});
+    names.insert(names.end(), {layer + "/weights", layer + "/bias"});
+    if (!file.has(names.back()))
+      break;  // refused with its name below, before a wild number of layers fills the memory
   }
+  const auto tensors = file.tensors(names);
+  std::vector<Layer> layers;
+  for (std::size_t i = 0; i < n_layers; ++i) layers.push_back({tensors[2 * i], tensors[2 * i + 1]});
   try {
     return {std::move(layers), activation_of(description["activation"].get<std::string>())};
   } catch (const InputError& error) {

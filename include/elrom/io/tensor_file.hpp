@@ -78,7 +78,9 @@ class TensorFile {
   /// @throws InputError naming file and tensor when it is not there (with the nearest name), or, of a file opened
   /// with Verify::on_use, when its bytes do not match their digest; tensors() compares nothing
   [[nodiscard]] const Tensor& tensor(std::string_view name) const;
-  /// The same, with its shape checked; 0 in `shape` stands for any size.
+  /// Several at once: their digests take half the time.
+  [[nodiscard]] std::vector<Tensor> tensors(std::span<const std::string> names) const;
+  /// One, with its shape checked; 0 in `shape` stands for any size.
   [[nodiscard]] const Tensor& tensor(std::string_view name, std::span<const std::size_t> shape) const;
   [[nodiscard]] const std::map<std::string, std::string>& texts() const { return texts_; }
   [[nodiscard]] bool has_text(std::string_view key) const { return texts_.contains(std::string(key)); }
@@ -103,7 +105,8 @@ class TensorFile {
 
  private:
   [[nodiscard]] const Tensor& find(std::string_view name) const;
-  void compare(std::string_view name, const Tensor& tensor) const;
+  /// @throws InputError when a tensor's bytes do not match their digest
+  void compare(std::span<const std::string> names, std::span<const Tensor> tensors) const;
 
   Verify verify_ = Verify::never;
   std::map<std::string, Tensor> tensors_;

@@ -1,0 +1,126 @@
+#include "../../src/io/tensor_header.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/random.hpp"
+
+namespace elrom::io {
+namespace {
+
+using Json = nlohmann::json;
+
+TensorHeader sample() {
+  TensorHeader header;
+  header.metadata = {{"plain", "text"},
+                     {"escapes", "\" \\ / \b \f \n \r \t \x01 \x7f"},
+                     {"json", R"({"a": [1, 2.5, {"b": "c\"d"}]})"},
+                     {"units", "\u00b5m, \u00b0C, \u03b5\u209b, \U0001f525"},
+                     {"", "an empty name"}};
+  header.tensors = {{"a", {DType::f32, {2, 3}, 0, 24}},
+                    {"b/\"quoted\" \u03b5", {DType::u8, {}, 24, 25}},
+                    {"c", {DType::i64, {0, 7}, 25, 25}}};
+  return header;
+}
+
+std::optional<TensorHeader> read(const std::string& json) {
+  try {
+    return parse_header(json, 25, "test");
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+void expect_equal(const TensorHeader& a, const TensorHeader& b) {
+  EXPECT_EQ(a.metadata, b.metadata);
+  ASSERT_EQ(a.tensors.size(), b.tensors.size());
+  for (const auto& [name, entry] : a.tensors) {
+    ASSERT_TRUE(b.tensors.contains(name)) << name;
+    const auto& other = b.tensors.at(name);
+    EXPECT_EQ(entry.type, other.type);
+    EXPECT_EQ(entry.shape, other.shape);
+    EXPECT_EQ(std::pair(entry.begin, entry.end), std::pair(other.begin, other.end));
+  }
+}
+
+TEST(TensorHeader, ReadsWhatItWrote) {
+  const auto header = read(format_header(sample()));
+  ASSERT_TRUE(header);
+  expect_equal(*header, sample());
+}
+
+TEST(TensorHeader, ReadsTheSameInOtherWords) {
+  // Spaces, another order, and every character escaped that can be.
+  const auto escaped = [](const std::string& text) { return Json(text).dump(-1, ' ', true); };
+  std::string json = "{ \t\r\n";
+  const auto header = sample();
+  for (auto it = header.tensors.rbegin(); it != header.tensors.rend(); ++it) {
+    json += escaped(it->first) + " : { \"data_offsets\" : [ " + std::to_string(it->second.begin) + " , " +
+            std::to_string(it->second.end) + " ] , \"dtype\":\"\\u00" +
+            (it->second.type == DType::u8    ? "55"
+             : it->second.type == DType::f32 ? "46"
+                                             : "49") +
+            std::string(name_of(it->second.type)).substr(1) +
+            "\" , \"shape\" : " + Json(it->second.shape).dump() + "},\n";
+  }
+  json += "\"__metadata__\" : {";
+  for (const auto& [name, text] : header.metadata)
+    json += (json.back() == '{' ? "" : ",") + escaped(name) + ":" + escaped(text);
+  json += "} } \n";
+
+  const auto found = read(json);
+  ASSERT_TRUE(found) << json;
+  expect_equal(*found, header);
+}
+
+/// What a general parser finds in a header; nullopt where it finds no JSON.
+std::optional<Json> general(const std::string& json) {
+  auto document = Json::parse(json, nullptr, false);
+  if (document.is_discarded()) return std::nullopt;
+  return document;
+}
+
+// Oracle: a general JSON parser. What it refuses is refused, and what is accepted is what it reads.
+TEST(TensorHeader, AgreesWithAGeneralParserOnDamagedHeaders) {
+  const std::string good = format_header(sample());
+  base::Random random(base::Seed(6));
+  const std::string bits = "{}[]\",:\\u0019azEe.-+ \n\x01\x7f\x80\xbf\xc0\xc3\xe2\xed\xf0\xf4\xff";
+  int accepted = 0;
+  for (int i = 0; i < 60'000; ++i) {
+    std::string bad = good;
+    for (auto n = 1 + random.below(2); n > 0; --n) {
+      const auto place = random.below(bad.size());
+      const char c = bits[random.below(bits.size())];
+      switch (random.below(3)) {
+        case 0:
+          bad[place] = c;
+          break;
+        case 1:
+          bad.insert(place, 1, c);
+          break;
+        default:
+          bad.erase(place, 1);
+      }
+    }
+    const auto found = read(bad);
+    const auto document = general(bad);
+    if (!found) continue;
+    ++accepted;
+    ASSERT_TRUE(document) << "accepted, but no JSON: " << bad;
+    ASSERT_EQ(document->size(), found->tensors.size() + (document->contains(metadata_key) ? 1 : 0)) << bad;
+    for (const auto& [name, text] : found->metadata)
+      ASSERT_EQ(document->at("__metadata__").at(name), text) << bad;
+    for (const auto& [name, entry] : found->tensors) {
+      ASSERT_EQ(document->at(name).at("shape").get<std::vector<std::size_t>>(), entry.shape) << bad;
+      ASSERT_EQ(document->at(name).at("dtype"), std::string(name_of(entry.type))) << bad;
+    }
+  }
+  EXPECT_GT(accepted, 1000) << "damage inside texts is no fault of the grammar";
+}
+
+}  // namespace
+}  // namespace elrom::io
