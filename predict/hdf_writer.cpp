@@ -133,16 +133,21 @@ HdfWriter::HdfWriter(const Run& run, const field::CaseInputs& inputs, const mode
   write_identity(run, inputs, assessment, elrom);
   write_provenance(run, inputs, assessment, elrom);
   values_ = create_fields(run, elrom.create_group(run.average ? "profiles" : "fields"));
+  written_.assign(values_.size(), false);
   if (run.level) half_width_ = create_fields(run, elrom.create_group("half_width"));
   write_mesh(run, elrom);
   if (!run.average) write_vtk(run, file_, elrom);
 }
 
+void HdfWriter::write_field(const Prediction& prediction, std::size_t i) {
+  values_[i].write(prediction.field(prediction.values, run_, i));
+  if (!half_width_.empty()) half_width_[i].write(prediction.field(prediction.half_width, run_, i));
+  written_[i] = true;
+}
+
 void HdfWriter::finish(const Prediction& prediction) {
   for (std::size_t i = 0; i < values_.size(); ++i)
-    values_[i].write(prediction.field(prediction.values, run_, i));
-  for (std::size_t i = 0; i < half_width_.size(); ++i)
-    half_width_[i].write(prediction.field(prediction.half_width, run_, i));
+    if (!written_[i]) write_field(prediction, i);
   const auto elrom = file_.group("elrom");
   if (prediction.audit != nullptr) write_audit(*prediction.audit, elrom);
   if (prediction.change != nullptr) write_change(*prediction.change, elrom);

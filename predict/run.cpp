@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <future>
 #include <memory>
 #include <mutex>
 
@@ -85,10 +84,43 @@ struct Desk {
   double compute = 0, write = 0;
 };
 
-/// A prediction's file on its way.
-struct HdfFile {
-  std::unique_ptr<base::AtomicFile> file;
-  HdfWriter writer;
+/// A prediction's file on its way: all of it but the values is written first, and each field when it is
+/// ready.
+class HdfFile {
+ public:
+  struct Begun {
+    std::unique_ptr<base::AtomicFile> file;
+    HdfWriter writer;
+  };
+  /// @param library guards the HDF5 library
+  HdfFile(std::mutex& library, std::function<Begun()> make) : library_(library), make_(std::move(make)) {}
+
+  void begin() {
+    const std::scoped_lock lock(library_);
+    begun_.emplace(make_());
+    is_begun_ = true;
+  }
+  /// Writes a field if the file has been begun; finish() writes it otherwise.
+  void offer_field(const Prediction& prediction, std::size_t i) {
+    if (!is_begun_) return;
+    const std::scoped_lock lock(library_);
+    begun_->writer.write_field(prediction, i);
+    begun_->file->begin_sync();
+  }
+  void finish(const Prediction& prediction) {
+    if (!is_begun_) begin();
+    {
+      const std::scoped_lock lock(library_);
+      begun_->writer.finish(prediction);
+    }
+    begun_->file->commit();
+  }
+
+ private:
+  std::mutex& library_;
+  std::function<Begun()> make_;
+  std::optional<Begun> begun_;
+  std::atomic<bool> is_begun_{false};
 };
 
 /// The parts of a run that live as long as it.
@@ -105,7 +137,6 @@ class Session {
                                               bool average) const;
   [[nodiscard]] std::unique_ptr<base::AtomicFile> file_for(Format format,
                                                            const field::CaseInputs& inputs) const;
-  void write_hdf_file(std::future<HdfFile>& begun, const Prediction& prediction);
   void write_text(Format format, const Prediction& prediction, Desk& desk);
   [[nodiscard]] std::filesystem::path target(Format format, const field::CaseInputs& inputs) const;
 
@@ -128,8 +159,7 @@ Session::Session(const Arguments& arguments)
       n_threads_(arguments.n_threads > 0 ? arguments.n_threads : base::available_threads()) {
   if (arguments_.timing) cached_ = cached_share(arguments_.bundle);
   lap_.lap();
-  model::BundleReader bundle(arguments_.bundle,
-                             arguments_.verify ? io::Verify::on_use : io::Verify::never);
+  model::BundleReader bundle(arguments_.bundle, arguments_.verify ? io::Verify::on_use : io::Verify::never);
   cases_ = case_list(arguments_, bundle.info().schema);
   load_geometry(bundle);
   if (arguments_.audit || arguments_.conserve) physics_.emplace(arguments_, bundle, run_.cells);
@@ -212,17 +242,6 @@ std::unique_ptr<base::AtomicFile> Session::file_for(Format format, const field::
                                             arguments_.sync ? base::Sync::content : base::Sync::none);
 }
 
-void Session::write_hdf_file(std::future<HdfFile>& begun, const Prediction& prediction) {
-  std::unique_ptr<base::AtomicFile> file;
-  {
-    const std::scoped_lock lock(hdf5_);
-    auto hdf = begun.get();
-    hdf.writer.finish(prediction);
-    file = std::move(hdf.file);
-  }
-  file->commit();
-}
-
 void Session::write_text(Format format, const Prediction& prediction, Desk& desk) {
   desk.text.clear();
   if (format == Format::csv) write_csv(run_, prediction, desk.text);
@@ -249,16 +268,24 @@ void Session::predict_case(std::size_t i, Desk& desk, int n_threads) {
     lines_->add(i, line + "; not written (--strict)");
     return;
   }
-  // All of the file but its values is written while they are computed; in a table every thread has a case of its own to do.
+  // A single case: its file is written while it is predicted. In a table every thread has a case of its own.
   const bool at_once = n_threads > 1 && arguments_.writes(Format::hdf);
-  auto hdf = std::async(at_once ? std::launch::async : std::launch::deferred, [&] {
+  HdfFile hdf(hdf5_, [&] {
     auto file = file_for(Format::hdf, inputs);
     const auto path = file->temporary();
-    return HdfFile{std::move(file), HdfWriter(run_, inputs, assessment, path)};
+    return HdfFile::Begun{std::move(file), HdfWriter(run_, inputs, assessment, path)};
   });
   desk.values.resize(predictor_->size());
   if (run_.level) desk.half_width.resize(predictor_->size());
-  predictor_->predict(inputs.values, desk.values, desk.half_width, desk.scratch, n_threads);
+  // As predicted is as written, unless something is still chosen, averaged or repaired.
+  const bool as_predicted = !physics_ && run_.cells.sources.empty() && !run_.average;
+  const Prediction predicted{
+      .inputs = &inputs, .assessment = &assessment, .values = desk.values, .half_width = desk.half_width};
+  model::Predictor::Alongside alongside;
+  if (at_once) alongside.first = [&] { hdf.begin(); };
+  if (at_once && as_predicted)
+    alongside.ready = [&](std::size_t i_field) { hdf.offer_field(predicted, i_field); };
+  predictor_->predict(inputs.values, desk.values, desk.half_width, desk.scratch, n_threads, alongside);
   if (physics_) desk.physics = physics_->apply(inputs, desk.values);
   const Prediction prediction{
       .inputs = &inputs,
@@ -270,7 +297,7 @@ void Session::predict_case(std::size_t i, Desk& desk, int n_threads) {
   desk.compute += lap.lap();
   for (const auto format : arguments_.formats) {
     if (format == Format::hdf) {
-      write_hdf_file(hdf, prediction);
+      hdf.finish(prediction);
     } else {
       write_text(format, prediction, desk);
     }

@@ -33,8 +33,7 @@ void sync(const std::filesystem::path& path, int flags) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path target, Sync sync)
-    : target_(std::move(target)), sync_(sync) {
+AtomicFile::AtomicFile(std::filesystem::path target, Sync sync) : target_(std::move(target)), sync_(sync) {
   static std::atomic<int> counter{0};
   const auto folder = folder_of(target_);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) throw system_error("cannot write into folder", folder);
@@ -44,6 +43,14 @@ AtomicFile::AtomicFile(std::filesystem::path target, Sync sync)
 
 AtomicFile::~AtomicFile() {
   if (!committed_) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::begin_sync() const {
+  if (sync_ == Sync::none) return;
+  const int descriptor = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;  // commit() tells
+  ::sync_file_range(descriptor, 0, 0, SYNC_FILE_RANGE_WRITE);
+  ::close(descriptor);
 }
 
 void AtomicFile::commit() {

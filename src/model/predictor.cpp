@@ -1,6 +1,7 @@
 #include "elrom/model/predictor.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -200,7 +201,7 @@ std::span<const std::int32_t> Predictor::planes() const { return impl_->planes; 
 std::size_t Predictor::n_columns() const { return impl_->bundle.n_columns(); }
 
 void Predictor::predict(std::span<const double> inputs, std::span<float> values, std::span<float> half_width,
-                        Scratch& scratch, int n_threads) const {
+                        Scratch& scratch, int n_threads, const Alongside& alongside) const {
   const std::size_t n_inputs = impl_->bundle.info().schema.size();
   check(inputs.size() == n_inputs, "predictor: one value an input");
   check(values.size() == size(), "predictor: room for the values");
@@ -217,16 +218,27 @@ void Predictor::predict(std::span<const double> inputs, std::span<float> values,
   if (scratch.workspaces.size() < static_cast<std::size_t>(n_threads)) {
     scratch.workspaces.resize(static_cast<std::size_t>(n_threads));
   }
+  const auto tell = [&](std::size_t i_field) {
+    if (alongside.ready) alongside.ready(i_field);
+  };
   if (n_threads == 1) {
+    if (alongside.first) alongside.first();
     for (const auto& unit : impl_->serial_units) {
       impl_->compute(unit, scratch.held_inputs, values, half_width, scratch.workspaces[0]);
+      tell(unit.i_field);
     }
     return;
   }
   const auto units = units_for(fields().size(), planes().size(), static_cast<std::size_t>(n_threads));
-  base::parallel_for(units.size(), n_threads, [&](std::size_t i, int worker) {
-    impl_->compute(units[i], scratch.held_inputs, values, half_width,
+  std::vector<std::atomic<int>> left(fields().size());  // units of each field
+  for (const auto& unit : units) ++left[unit.i_field];
+  const std::size_t n_before = alongside.first ? 1 : 0;
+  base::parallel_for(n_before + units.size(), n_threads, [&](std::size_t i, int worker) {
+    if (i < n_before) return alongside.first();
+    const auto& unit = units[i - n_before];
+    impl_->compute(unit, scratch.held_inputs, values, half_width,
                    scratch.workspaces[static_cast<std::size_t>(worker)]);
+    if (--left[unit.i_field] == 0) tell(unit.i_field);
   });
 }
 

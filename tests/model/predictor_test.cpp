@@ -92,6 +92,41 @@ TEST_F(PredictorTest, AnyThreadCountGivesTheSameBits) {
   for (const int n : {2, 3, 16}) EXPECT_EQ(predict({}, n), one) << n << " threads";
 }
 
+TEST_F(PredictorTest, TellsOfEachFieldOnceWhenItsValuesAreThere) {
+  const auto expected = predict({});
+  const Predictor predictor(path_, {});
+
+  for (const int n_threads : {1, 2, 7}) {
+    std::vector<float> values(predictor.size());
+    std::vector<int> n_told(predictor.fields().size()), n_right(n_told);
+    std::atomic<int> n_first = 0;
+    Predictor::Scratch scratch;
+    predictor.predict(inputs_, values, {}, scratch, n_threads,
+                      {.first = [&] { ++n_first; },
+                       .ready =
+                           [&](std::size_t i) {
+                             ++n_told[i];
+                             const auto begin = static_cast<std::ptrdiff_t>(i * n_cells);
+                             n_right[i] += std::equal(values.begin() + begin, values.begin() + begin + n_cells,
+                                                      expected.begin() + begin);
+                           }});
+    EXPECT_EQ(n_first, 1);
+    EXPECT_THAT(n_told, ::testing::Each(1)) << n_threads << " threads";
+    EXPECT_THAT(n_right, ::testing::Each(1)) << n_threads << " threads";
+  }
+}
+
+TEST_F(PredictorTest, WhatACallerDoesAlongsideMayFail) {
+  const Predictor predictor(path_, {});
+  std::vector<float> values(predictor.size());
+  Predictor::Scratch scratch;
+
+  for (const int n_threads : {1, 2}) {
+    EXPECT_THROW(predictor.predict(inputs_, values, {}, scratch, n_threads, {.first = [] { throw SystemError("disk"); }}),
+                 SystemError);
+  }
+}
+
 TEST_F(PredictorTest, ChosenFieldsAndPlanesAreBitsOfTheWhole) {
   const auto all = predict({});
 

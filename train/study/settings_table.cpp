@@ -319,7 +319,7 @@ const std::vector<EffortRow>& effort_rows() {
       {[](S& s) -> int& { return s.search.patience; }, {3, 4, 12}},
       {[](S& s) -> int& { return s.fit.max_epochs; }, {30, 60, 400}},
       {[](S& s) -> int& { return s.fit.patience; }, {5, 8, 30}},
-      {[](S& s) -> int& { return s.peers.folds; }, {4, 5, 10}},
+      {[](S& s) -> int& { return s.peers.folds; }, {6, 6, 10}},
   };
   return rows;
 }

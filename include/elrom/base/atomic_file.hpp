@@ -22,6 +22,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+  /// Has the system send what was written so far to the disk, and waits for nothing: commit() then waits less.
+  void begin_sync() const;
   /// The writer has closed the temporary; makes it the target. @throws SystemError
   void commit();
 
