@@ -45,6 +45,30 @@ TEST(LoadGroupedFolds, AreNeverMoreThanCases) {
   EXPECT_ERROR(UsageError, "at least 2", load_grouped_folds(loads, math::all_rows(1), 10));
 }
 
+TEST(SpreadFolds, TakeEveryNthLoad) {
+  CaseSet cases = test::toy_cases(7);
+  cases.loads = {0.9, 0.1, 0.2, 0.8, 0.3, 0.7, 0.4};
+
+  const Folds folds = spread_folds(cases, math::all_rows(7), 3);
+
+  EXPECT_THAT(folds, ::testing::ElementsAre(::testing::ElementsAre(0, 1, 6), ::testing::ElementsAre(2, 5),
+                                            ::testing::ElementsAre(3, 4)));
+}
+
+TEST(SpreadFolds, KeepCasesOfEqualInputsTogether) {
+  CaseSet cases = test::toy_cases(6);
+  for (const std::size_t i : {1U, 4U}) {
+    cases.loads[i] = cases.loads[0];
+    cases.inputs.row(static_cast<Eigen::Index>(i)) = cases.inputs.row(0);
+  }
+
+  const Folds folds = spread_folds(cases, math::all_rows(6), 3);
+
+  const auto holds = [](const std::vector<std::size_t>& fold, std::size_t row) { return std::ranges::count(fold, row) == 1; };
+  for (const auto& fold : folds) EXPECT_TRUE(holds(fold, 0) == holds(fold, 1) && holds(fold, 0) == holds(fold, 4));
+  EXPECT_EQ(folds[0].size() + folds[1].size() + folds[2].size(), 6U);
+}
+
 TEST(CrossPredict, NeverShowsAModelItsOwnFold) {
   const CaseSet cases = test::toy_cases(12);
   FieldData data = test::toy_field(cases);

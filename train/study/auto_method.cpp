@@ -103,28 +103,13 @@ class Contest {
     // Weights fitted to the errors that they are judged by flatter a blend; those of the other folds do not.
     double blended = 0;
     for (const MatrixXd& gram : grams) {
-      fold_weights_.push_back(weights_of(all - gram));
-      blended += fold_weights_.back().dot(gram * fold_weights_.back());
+      const VectorXd others = weights_of(all - gram);
+      blended += others.dot(gram * others);
     }
     const bool blend = std::sqrt(std::max(0.0, blended)) < (1 - least_gain) * std::sqrt(single);
-    if (!blend) {
-      weights = VectorXd::Unit(weights.size(), best);
-      std::ranges::fill(fold_weights_, weights);
-    }
+    if (!blend) weights = VectorXd::Unit(weights.size(), best);
     for (Index i = 0; i < weights.size(); ++i) scores_[standing_[size(i)]].weight = weights[i];
     return relative(blend ? blended : single);
-  }
-
-  [[nodiscard]] MatrixF residuals() const {
-    MatrixF sum = MatrixF::Zero(errors_.front().rows(), errors_.front().cols());
-    for (Index i = 0; i < sum.rows(); ++i) {
-      const VectorXd& weights = fold_weights_[fold_of_[size(i)]];
-      for (std::size_t m = 0; m < errors_.size(); ++m) {
-        if (const double weight = weights[static_cast<Index>(m)]; weight > 0)
-          sum.row(i) += static_cast<float>(weight) * errors_[m].row(i);
-      }
-    }
-    return sum;
   }
 
   [[nodiscard]] const std::vector<CandidateScore>& scores() const { return scores_; }
@@ -171,9 +156,8 @@ class Contest {
   std::vector<std::size_t> fold_of_;  // of each case
   double variation_;
   std::vector<CandidateScore> scores_;
-  std::vector<std::size_t> standing_;   // place in scores_ of each entry of errors_
-  std::vector<MatrixF> errors_;         // (n_cases, n_cells)
-  std::vector<VectorXd> fold_weights_;  // of each fold, learned from the others
+  std::vector<std::size_t> standing_;  // place in scores_ of each entry of errors_
+  std::vector<MatrixF> errors_;        // (n_cases, n_cells)
 };
 
 std::unique_ptr<model::FieldModel> blend(const std::vector<double>& weights,
@@ -218,7 +202,6 @@ AutoFit fit_auto(const FieldData& data, std::span<const std::size_t> cases,
   AutoFit fit;
   fit.nrmse = contest.decide(options.least_gain);
   fit.candidates = contest.scores();
-  fit.residuals = contest.residuals();
 
   std::vector<double> weights;
   std::vector<std::unique_ptr<model::FieldModel>> models;

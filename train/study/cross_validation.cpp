@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "elrom/base/error.hpp"
@@ -10,25 +11,49 @@
 
 namespace elrom::study {
 
-Folds load_grouped_folds(std::span<const double> loads, std::span<const std::size_t> cases,
-                         std::size_t n_folds, std::size_t blocks_per_fold) {
-  if (cases.size() < 2) {
+namespace {
+
+/// A load that is not given counts as the largest.
+double place_of(double load) { return std::isnan(load) ? std::numeric_limits<double>::infinity() : load; }
+
+std::size_t possible_folds(std::size_t n_folds, std::size_t n_cases) {
+  if (n_cases < 2) {
     throw UsageError({.what = "cross-validation needs more cases",
-                      .found = std::to_string(cases.size()),
+                      .found = std::to_string(n_cases),
                       .expected = "at least 2"});
   }
-  std::vector<std::size_t> order(cases.begin(), cases.end());
-  const auto load = [&](std::size_t row) {
-    return std::isnan(loads[row]) ? std::numeric_limits<double>::infinity() : loads[row];
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return load(a) < load(b); });
+  return std::clamp<std::size_t>(n_folds, 2, n_cases);
+}
 
-  n_folds = std::clamp<std::size_t>(n_folds, 2, order.size());
+}  // namespace
+
+Folds load_grouped_folds(std::span<const double> loads, std::span<const std::size_t> cases,
+                         std::size_t n_folds, std::size_t blocks_per_fold) {
+  n_folds = possible_folds(n_folds, cases.size());
+  std::vector<std::size_t> order(cases.begin(), cases.end());
+  std::ranges::stable_sort(order, {}, [&](std::size_t row) { return place_of(loads[row]); });
   const std::size_t n_blocks = std::min(n_folds * std::max<std::size_t>(blocks_per_fold, 1), order.size());
   Folds folds(n_folds);
   for (std::size_t i = 0; i < order.size(); ++i)
     folds[i * n_blocks / order.size() % n_folds].push_back(order[i]);
+  for (auto& fold : folds) std::sort(fold.begin(), fold.end());
+  return folds;
+}
+
+Folds spread_folds(const CaseSet& cases, std::span<const std::size_t> rows, std::size_t n_folds) {
+  const auto inputs = [&](std::size_t row) {
+    const auto values = cases.inputs.row(static_cast<Eigen::Index>(row));
+    return std::vector<double>(values.begin(), values.end());
+  };
+  std::map<std::pair<double, std::vector<double>>, std::vector<std::size_t>> groups;  // of equal inputs, by load
+  for (const std::size_t row : rows) groups[{place_of(cases.loads[row]), inputs(row)}].push_back(row);
+  if (groups.size() < 2) return load_grouped_folds(cases.loads, rows, n_folds, rows.size());
+  Folds folds(possible_folds(n_folds, groups.size()));
+  std::size_t i = 0;
+  for (const auto& [place, group] : groups) {
+    auto& fold = folds[i++ % folds.size()];
+    fold.insert(fold.end(), group.begin(), group.end());
+  }
   for (auto& fold : folds) std::sort(fold.begin(), fold.end());
   return folds;
 }

@@ -28,12 +28,25 @@ AutoFit fit_alone(const FieldStageRequest& request, const std::vector<std::size_
   fit.nrmse = NAN;
   if (request.n_folds > 0) {
     const auto folds = load_grouped_folds(data.cases->loads, rows, request.n_folds);
-    fit.residuals = data.values - method.cross_predict(data, folds, context);
-    fit.nrmse = cross_validated_nrmse(data, rows, fit.residuals);
+    fit.nrmse = cross_validated_nrmse(data, rows, data.values - method.cross_predict(data, folds, context));
   }
   fit.candidates.push_back({.name = method.name(), .nrmse = fit.nrmse, .weight = 1});
   fit.model = method.fit(data, rows, context);
   return fit;
+}
+
+/// Truth minus prediction, each case by a model that never saw it but saw the loads around it, as intervals
+/// promise it: the folds that methods compete in leave gaps, which a new case need not meet.
+MatrixF residuals_of_new_cases(const FieldStageRequest& request, const AutoFit& fit,
+                               const std::vector<std::size_t>& rows, const FitContext& context) {
+  const auto& data = request.data;
+  const auto folds = spread_folds(*data.cases, rows, request.n_folds);
+  MatrixF residuals = data.values;
+  for (std::size_t i = 0; i < request.candidates.size(); ++i) {
+    const auto weight = static_cast<float>(fit.candidates[i].weight);
+    if (weight > 0) residuals -= weight * request.candidates[i]->cross_predict(data, folds, context);
+  }
+  return residuals;
 }
 
 Json accuracy_of(const std::string& name, const AutoFit& fit) {
@@ -57,8 +70,9 @@ io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& co
                        ? fit_auto(data, rows, request.candidates, {.n_folds = request.n_folds}, context)
                        : fit_alone(request, rows, context);
   io::TensorFile file;
-  if (fit.residuals.size() > 0) {
-    model::Uncertainty(fit.residuals, data.cases->mesh.n_columns, data.cases->inputs)
+  if (request.n_folds > 0) {
+    model::Uncertainty(residuals_of_new_cases(request, fit, rows, context), data.cases->mesh.n_columns,
+                       data.cases->inputs)
         .save(file, "uncertainty");
     file.set_text("has_uncertainty", "yes");
   }

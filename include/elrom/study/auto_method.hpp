@@ -29,8 +29,7 @@ struct CandidateScore {
 struct AutoFit {
   std::unique_ptr<model::FieldModel> model;  ///< fitted on all the cases
   std::vector<CandidateScore> candidates;    ///< in the order given
-  double nrmse = 0;   ///< cross-validated, of the final model: a blend's weights are those of the other folds
-  MatrixF residuals;  //!< truth minus prediction behind `nrmse`, SI, (cases.size(), n_cells)
+  double nrmse = 0;  ///< cross-validated, of the final model: a blend's weights are those of the other folds
 };
 
 /// A candidate that throws NumericalError loses and is told to the log; when all do, the first error is
