@@ -94,6 +94,12 @@ class HdfFile {
   };
   /// @param library guards the HDF5 library
   HdfFile(std::mutex& library, std::function<Begun()> make) : library_(library), make_(std::move(make)) {}
+  ~HdfFile() {  // what an exception leaves open is closed by the library too
+    const std::scoped_lock lock(library_);
+    begun_.reset();
+  }
+  HdfFile(const HdfFile&) = delete;
+  HdfFile& operator=(const HdfFile&) = delete;
 
   void begin() {
     const std::scoped_lock lock(library_);

@@ -26,9 +26,9 @@ std::shared_ptr<const study::Trainer> make_trainer(const study::Settings& settin
 #endif
 }
 
-/// Whether a launcher (mpirun and its like) started this process beside others.
+/// Whether a launcher (mpirun, mpiexec, srun) started this process beside others.
 bool is_one_of_several() {
-  for (const char* size : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+  for (const char* size : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
     if (const char* text = std::getenv(size)) return std::atoi(text) > 1;
   }
   return false;
@@ -42,10 +42,12 @@ int work_alone(const StudyArguments& arguments, const StudyWork& work) {
 
 #if ELROM_HAS_MPI
 int work_together(const StudyArguments& arguments, const StudyWork& work) {
+  const auto stop =
+      base::interrupt_token();  // before the ranks meet: one that failed alone would keep the others waiting
   const mpi::World world;
   if (world.rank() > 0) {
     // Settings are read with the first unit: when they are wrong, rank 0 says so once and there is none.
-    world.serve([&] { return make_trainer(arguments.resolve()); }, base::interrupt_token());
+    world.serve([&] { return make_trainer(arguments.resolve()); }, stop);
     return 0;
   }
   const auto settings = arguments.resolve();

@@ -130,11 +130,11 @@ const Tensor& TensorFile::find(std::string_view name) const {
 
 const Tensor& TensorFile::tensor(std::string_view name, std::span<const std::size_t> shape) const {
   const Tensor& found = tensor(name);
-  const auto fits = [](std::size_t have, std::size_t want) { return want == 0 || have == want; };
+  const auto fits = [](std::size_t have, std::size_t want) { return want == any_size || have == want; };
   if (std::equal(found.shape().begin(), found.shape().end(), shape.begin(), shape.end(), fits)) return found;
   const auto text = [](std::span<const std::size_t> sizes) {
     std::vector<std::string> parts;
-    for (const auto n : sizes) parts.push_back(n == 0 ? "any" : std::to_string(n));
+    for (const auto n : sizes) parts.push_back(n == any_size ? "any" : std::to_string(n));
     return "(" + base::join(parts, ", ") + ")";
   };
   throw InputError({.what = "tensor of another shape",

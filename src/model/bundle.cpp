@@ -53,7 +53,8 @@ BundleReader::BundleReader(const std::filesystem::path& path, io::Verify verify)
   mesh_digest_ = std::move(description.mesh_digest);
   // A bundle holds a centre for every cell it speaks of: its sizes are bounded by its bytes.
   const auto centre = file_.tensors().find("mesh/centre");
-  if (centre == file_.tensors().end() || centre->second.shape() != std::vector{n_planes_ * n_columns_, std::size_t{3}}) {
+  if (centre == file_.tensors().end() ||
+      centre->second.shape() != std::vector{n_planes_ * n_columns_, std::size_t{3}}) {
     throw InputError({.what = "mesh without its cells",
                       .where = file_.where() + ":mesh/centre",
                       .expected = "centres of " + std::to_string(n_planes_ * n_columns_) + " cells"});
@@ -70,7 +71,8 @@ field::Mesh BundleReader::mesh(const MeshPart& part) const {
   mesh.n_planes = planes.size();
   mesh.n_columns = n_columns_;
   const std::size_t n_cells = n_planes_ * n_columns_;
-  const std::array<std::size_t, 2> centre_shape{n_cells, 3}, points_shape{0, 3}, corners_shape{n_cells, 8};
+  const std::array<std::size_t, 2> centre_shape{n_cells, 3}, points_shape{io::any_size, 3},
+      corners_shape{n_cells, 8};
   std::span<const double> centre, volume;
   std::span<const std::int32_t> corners;
   const std::array<std::function<void()>, 4> readers{
@@ -79,7 +81,8 @@ field::Mesh BundleReader::mesh(const MeshPart& part) const {
       [&] { centre = file_.tensor("mesh/centre", centre_shape).f64(); },
       [&] { volume = file_.tensor("mesh/volume", std::array{n_cells}).f64(); }};
   const std::size_t first = part.with_corners ? 0 : 2;
-  base::parallel_for(readers.size() - first, part.n_threads, [&](std::size_t i, int) { readers[first + i](); });
+  base::parallel_for(readers.size() - first, part.n_threads,
+                     [&](std::size_t i, int) { readers[first + i](); });
   mesh.centre.resize(static_cast<Eigen::Index>(mesh.n_cells()), 3);
   double* to = mesh.centre.data();
   for (const auto plane : planes) {
@@ -106,9 +109,7 @@ field::Mesh BundleReader::mesh(const MeshPart& part) const {
   return mesh;
 }
 
-Guard BundleReader::guard() const {
-  return Guard::load(file_, "guard", info_.schema);
-}
+Guard BundleReader::guard() const { return Guard::load(file_, "guard", info_.schema); }
 
 std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, const Wanted& wanted) const {
   const auto prefix = field_prefix(field);

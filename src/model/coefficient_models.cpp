@@ -59,12 +59,11 @@ void LinearCoefficients::save(io::TensorFile& file, const std::string& prefix) c
 std::unique_ptr<CoefficientModel> LinearCoefficients::load(const io::TensorFile& file,
                                                            const std::string& prefix) {
   math::Standardiser scaler = load_scaler(file, prefix + "/scaler");
-  MatrixD weights = load_matrix(file, prefix + "/weights", static_cast<std::size_t>(scaler.size()), 0);
+  MatrixD weights =
+      load_matrix(file, prefix + "/weights", static_cast<std::size_t>(scaler.size()), io::any_size);
   const auto n = static_cast<std::size_t>(weights.cols());
   VectorXd intercept = load_vector(file, prefix + "/intercept", n),
            variance = load_vector(file, prefix + "/variance", n);
-  check(static_cast<std::size_t>(intercept.size()) == n && static_cast<std::size_t>(variance.size()) == n,
-        "linear coefficients: sizes");
   return std::make_unique<LinearCoefficients>(std::move(scaler), std::move(weights), std::move(intercept),
                                               std::move(variance));
 }
@@ -157,12 +156,12 @@ std::unique_ptr<CoefficientModel> GpCoefficients::load(const io::TensorFile& fil
   model->covariance_ = math::covariance_of(text_of(read_description(file, prefix), "covariance", where));
   model->scaler_ = load_scaler(file, prefix + "/scaler");
   const auto n_inputs = static_cast<std::size_t>(model->scaler_.size());
-  model->inputs_ = load_matrix(file, prefix + "/inputs", 0, n_inputs);
-  model->lengths_ = load_matrix(file, prefix + "/lengths", 0, n_inputs);
+  model->inputs_ = load_matrix(file, prefix + "/inputs", io::any_size, n_inputs);
+  model->lengths_ = load_matrix(file, prefix + "/lengths", io::any_size, n_inputs);
   const auto n_cases = static_cast<std::size_t>(model->inputs_.rows()),
              n_kernels = static_cast<std::size_t>(model->lengths_.rows());
   model->signal_ = load_vector(file, prefix + "/signal", n_kernels);
-  model->weights_ = load_matrix(file, prefix + "/weights", n_cases, 0);
+  model->weights_ = load_matrix(file, prefix + "/weights", n_cases, io::any_size);
   model->scale_ = load_vector(file, prefix + "/scale", static_cast<std::size_t>(model->weights_.cols()));
   const std::array<std::size_t, 3> shape{n_kernels, n_cases, n_cases};
   model->inverse_factor_ = file.tensor(prefix + "/inverse_factor", shape);
@@ -207,9 +206,11 @@ std::unique_ptr<CoefficientModel> RbfCoefficients::load(const io::TensorFile& fi
   const std::string where = file.where() + ":" + prefix;
   const auto function = math::radial_function_of(text_of(read_description(file, prefix), "function", where));
   math::Standardiser scaler = load_scaler(file, prefix + "/scaler");
-  MatrixD points = load_matrix(file, prefix + "/inputs", 0, static_cast<std::size_t>(scaler.size()));
-  MatrixD weights = load_matrix(file, prefix + "/weights", static_cast<std::size_t>(points.rows()), 0);
-  MatrixD tail = load_matrix(file, prefix + "/tail", 0, static_cast<std::size_t>(weights.cols()));
+  MatrixD points =
+      load_matrix(file, prefix + "/inputs", io::any_size, static_cast<std::size_t>(scaler.size()));
+  MatrixD weights =
+      load_matrix(file, prefix + "/weights", static_cast<std::size_t>(points.rows()), io::any_size);
+  MatrixD tail = load_matrix(file, prefix + "/tail", io::any_size, static_cast<std::size_t>(weights.cols()));
   VectorXd variance = load_vector(file, prefix + "/variance", static_cast<std::size_t>(weights.cols()));
   if (tail.rows() != 1 && tail.rows() != 1 + scaler.size()) {
     throw InputError({.what = "tail of radial basis functions of the wrong size",

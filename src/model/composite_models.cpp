@@ -176,7 +176,7 @@ void MirrorModel::save(io::TensorFile& file, const std::string& prefix) const {
 }
 
 std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const std::string& prefix,
-                                             const Wanted& wanted) {
+                                              const Wanted& wanted) {
   const std::string where = file.where() + ":" + prefix;
   const nlohmann::json description = read_description(file, prefix);
   const std::size_t n = count_of(description, "images", where);
@@ -192,7 +192,7 @@ std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const 
   for (std::size_t i = 0; i < n; ++i) {
     const std::string image = prefix + "/image" + std::to_string(i);
     const std::array<std::size_t, 1> inputs{n_inputs};
-    const std::array<std::size_t, 2> columns{0, mirror->n_columns()};
+    const std::array<std::size_t, 2> columns{io::any_size, mirror->n_columns()};
     Image part{file.tensor(image + "/input_from", inputs), file.tensor(image + "/input_sign", inputs),
                file.tensor(image + "/input_offset", inputs), file.tensor(image + "/column_from", columns),
                (*signs)[i].get<float>()};

@@ -203,7 +203,7 @@ Guard Guard::load(const io::TensorFile& file, const std::string& prefix, const f
   for (const auto& name : description["cases"])
     guard.names_.push_back(name.is_string() ? name.get<std::string>() : "?");
   const std::size_t n = guard.names_.size();
-  const std::size_t inputs_shape[] = {n, schema.size()}, loads_shape[] = {n}, any[] = {0};
+  const std::size_t inputs_shape[] = {n, schema.size()}, loads_shape[] = {n}, any[] = {io::any_size};
   guard.inputs_ = file.tensor(prefix + "/inputs", inputs_shape).matrix64();
   const auto loads = file.tensor(prefix + "/loads", loads_shape).f64();
   const auto self = file.tensor(prefix + "/self_distance", any).f64();

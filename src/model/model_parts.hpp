@@ -35,10 +35,10 @@ void save_scaler(io::TensorFile& file, const std::string& prefix, const math::St
 /// @throws InputError, also for a scale that is not positive
 [[nodiscard]] math::Standardiser load_scaler(const io::TensorFile& file, const std::string& prefix);
 
-/// A rank-1 tensor of doubles; n = 0: any size.
+/// A rank-1 tensor of `n` doubles.
 [[nodiscard]] Eigen::VectorXd load_vector(const io::TensorFile& file, const std::string& name,
-                                          std::size_t n = 0);
-/// A rank-2 tensor of doubles; 0: any size.
+                                          std::size_t n = io::any_size);
+/// A rank-2 tensor of doubles; either size may be io::any_size.
 [[nodiscard]] MatrixD load_matrix(const io::TensorFile& file, const std::string& name, std::size_t rows,
                                   std::size_t columns);
 void save_vector(io::TensorFile& file, const std::string& name, const Eigen::VectorXd& values);

@@ -17,7 +17,7 @@ NearestModel::NearestModel(math::Standardiser scaler, MatrixD inputs, io::Tensor
       n_columns_(n_columns) {
   const bool fits = values_.shape().size() == 2 &&
                     values_.shape()[0] == static_cast<std::size_t>(inputs_.rows()) && inputs_.rows() > 0 &&
-                    n_columns_ > 0 && values_.shape()[1] % n_columns_ == 0;
+                    n_columns_ > 0 && values_.shape()[1] > 0 && values_.shape()[1] % n_columns_ == 0;
   if (!fits) {
     throw InputError(
         {.what = "cases do not fit their inputs",
@@ -64,16 +64,17 @@ void NearestModel::save(io::TensorFile& file, const std::string& prefix) const {
 }
 
 std::unique_ptr<FieldModel> NearestModel::load(const io::TensorFile& file, const std::string& prefix,
-                                             const Wanted& /*wanted*/) {
+                                               const Wanted& /*wanted*/) {
   const std::string where = file.where() + ":" + prefix;
   const nlohmann::json description = read_description(file, prefix);
   if (!description.contains("n_columns") || !description["n_columns"].is_number_unsigned()) {
     throw InputError(
         {.what = "incomplete description of a model", .where = where, .expected = "a number \"n_columns\""});
   }
-  const std::array<std::size_t, 2> any{0, 0};
+  const std::array<std::size_t, 2> any{io::any_size, io::any_size};
   math::Standardiser scaler = load_scaler(file, prefix + "/scaler");
-  MatrixD inputs = load_matrix(file, prefix + "/inputs", 0, static_cast<std::size_t>(scaler.size()));
+  MatrixD inputs =
+      load_matrix(file, prefix + "/inputs", io::any_size, static_cast<std::size_t>(scaler.size()));
   io::Tensor cases = file.tensor(prefix + "/cases", any);
   static_cast<void>(cases.f32());
   return std::make_unique<NearestModel>(std::move(scaler), std::move(inputs), std::move(cases),

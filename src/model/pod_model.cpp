@@ -159,9 +159,9 @@ const std::vector<std::string>& PodModel::kinds() {
 }
 
 std::unique_ptr<FieldModel> PodModel::load(const io::TensorFile& file, const std::string& prefix,
-                                             const Wanted& /*wanted*/) {
-  const std::array<std::size_t, 2> plane{0, 0};
-  const std::array<std::size_t, 3> modes{0, 0, 0};
+                                           const Wanted& /*wanted*/) {
+  const std::array<std::size_t, 2> plane{io::any_size, io::any_size};
+  const std::array<std::size_t, 3> modes{io::any_size, io::any_size, io::any_size};
   Parts parts{.kind = text_of(read_description(file, prefix), "kind", file.where() + ":" + prefix),
               .mean = file.tensor(prefix + "/mean", plane),
               .modes = file.tensor(prefix + "/modes", modes),
@@ -169,7 +169,7 @@ std::unique_ptr<FieldModel> PodModel::load(const io::TensorFile& file, const std
               .coefficients = load_coefficient_model(file, prefix + "/coefficients"),
               .fold = SymmetryFold::load(file, prefix + "/fold")};
   if (!parts.fold.empty()) {
-    const std::array<std::size_t, 1> any{0};
+    const std::array<std::size_t, 1> any{io::any_size};
     const auto classes = file.tensor(prefix + "/fold/class_of_mode", any).i32();
     parts.class_of_mode.assign(classes.begin(), classes.end());
   }

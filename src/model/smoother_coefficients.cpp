@@ -133,12 +133,13 @@ std::unique_ptr<CoefficientModel> SmootherCoefficients::load(const io::TensorFil
   }
   FeatureMap features = FeatureMap::load(file, prefix + "/features");
   math::Standardiser scaler = load_scaler(file, prefix + "/scaler");
-  MatrixD cases = load_matrix(file, prefix + "/cases", 0, features.size());
+  MatrixD cases = load_matrix(file, prefix + "/cases", io::any_size, features.size());
   const auto n_cases = static_cast<std::size_t>(cases.rows());
   std::vector<Group> groups;
   for (std::size_t i = 0; i < kernels->size(); ++i) {
     const std::string name = prefix + "/group" + std::to_string(i);
-    Group group{kernel_of((*kernels)[i], where), load_matrix(file, name + "/weights", n_cases, 0), {}, {}};
+    Group group{
+        kernel_of((*kernels)[i], where), load_matrix(file, name + "/weights", n_cases, io::any_size), {}, {}};
     group.kernel.inverse_lengths = load_vector(file, name + "/inverse_lengths", features.size());
     group.kernel.imbalance = load_vector(file, name + "/imbalance", features.size());
     group.signal = load_vector(file, name + "/signal", static_cast<std::size_t>(group.weights.cols()));

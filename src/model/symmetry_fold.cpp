@@ -127,10 +127,10 @@ void SymmetryFold::save(io::TensorFile& file, const std::string& prefix) const {
 SymmetryFold SymmetryFold::load(const io::TensorFile& file, const std::string& prefix) {
   SymmetryFold fold;
   if (!file.has(prefix + "/orbit")) return fold;
-  const std::array<std::size_t, 1> any{0};
+  const std::array<std::size_t, 1> any{io::any_size};
   const auto orbit = file.tensor(prefix + "/orbit", any).i32();
   fold.orbit_.assign(orbit.begin(), orbit.end());
-  const std::array<std::size_t, 2> table{0, orbit.size()};
+  const std::array<std::size_t, 2> table{io::any_size, orbit.size()};
   fold.sign_ = file.tensor(prefix + "/sign", table);
 
   // Orbits are numbered in the order of their first columns.

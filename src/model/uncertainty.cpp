@@ -197,7 +197,7 @@ Uncertainty Uncertainty::load(const io::TensorFile& file, const std::string& pre
   }
   Uncertainty uncertainty;
   uncertainty.n_cases_ = description["n_cases"].get<std::size_t>();
-  const std::array<std::size_t, 2> plane{0, 0};
+  const std::array<std::size_t, 2> plane{io::any_size, io::any_size};
   uncertainty.scale_ = file.tensor(prefix + "/scale", plane);
   static_cast<void>(uncertainty.scale_.f32());
   const Eigen::VectorXd levels = load_vector(file, prefix + "/levels");

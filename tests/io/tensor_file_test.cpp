@@ -247,10 +247,12 @@ TEST(TensorFile, MissingTensorNamesTheNearest) {
   }
 }
 
-TEST(TensorFile, ShapeIsCheckedWithZeroForAnySize) {
+TEST(TensorFile, ShapeIsCheckedWithRoomForAnySize) {
   const auto file = sample();
 
-  EXPECT_NO_THROW((void)file.tensor("weights", std::array<std::size_t, 2>{0, 7}));
+  EXPECT_NO_THROW((void)file.tensor("weights", std::array<std::size_t, 2>{any_size, 7}));
+  EXPECT_NO_THROW((void)file.tensor("nothing", std::array<std::size_t, 2>{any_size, 4}));
+  EXPECT_THROW((void)file.tensor("weights", std::array<std::size_t, 2>{0, 7}), InputError);
   EXPECT_THROW((void)file.tensor("weights", std::array<std::size_t, 2>{7, 5}), InputError);
   EXPECT_THROW((void)file.tensor("weights", std::array<std::size_t, 1>{35}), InputError);
 }

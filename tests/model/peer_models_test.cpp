@@ -116,6 +116,21 @@ TEST_P(EveryModel, NamesTheMissingTensor) {
   EXPECT_THROW((void)load_field_model(part, "m"), InputError);
 }
 
+// A fuzzer found empty weights that let any number of intercepts pass.
+TEST_P(EveryModel, RefusesAnEmptyTensor) {
+  io::TensorFile whole;
+  make(GetParam())->save(whole, "m");
+  for (const auto& [name, tensor] : whole.tensors()) {
+    for (std::size_t i = 0; i < tensor.shape().size(); ++i) {
+      auto shape = tensor.shape();
+      shape[i] = 0;
+      auto file = whole;
+      file.set(name, io::Tensor(tensor.type(), shape, nullptr, tensor.bytes().data()));
+      EXPECT_THROW((void)load_field_model(file, "m"), InputError) << name << ", dimension " << i;
+    }
+  }
+}
+
 TEST(PodModel, IsMeanPlusCoefficientsTimesModes) {
   const auto model = make("linear");
   const Parts p;

@@ -24,7 +24,7 @@ TEST(Units, ATrainingArrivesWithItsProblem) {
       .budget = {11, 4},
       .seed = base::Seed(std::numeric_limits<std::uint64_t>::max() - 1),
       .monitored = true,
-      .checkpoint = "/some/where"};
+      .checkpoint = "/some/wh\xe9re"};  // Latin-1
   auto message = to_message(unit);
   EXPECT_FALSE(has_problem(message));
   add_data(message, problem);
@@ -36,7 +36,7 @@ TEST(Units, ATrainingArrivesWithItsProblem) {
   EXPECT_EQ(arrived.budget.patience, 4);
   EXPECT_EQ(arrived.seed.value(), unit.seed.value());
   EXPECT_TRUE(arrived.monitored);
-  EXPECT_EQ(arrived.checkpoint, "/some/where");
+  EXPECT_EQ(arrived.checkpoint, "/some/wh\xe9re");
   const auto same = problem_of(message);
   EXPECT_EQ(digest_of(same), digest_of(problem));
   EXPECT_EQ(same.train_targets, problem.train_targets);

@@ -62,6 +62,27 @@ TEST_F(World, AWrongSettingIsToldOnce) {
   EXPECT_EQ(told.find("unknown setting", told.find("unknown setting") + 1), std::string::npos) << told;
 }
 
+/// tests/mpi/ranks.cpp on two ranks
+struct Ranks : World {
+  [[nodiscard]] int run_ranks(const std::string& what) const {
+    return run("timeout 60 " ELROM_MPIEXEC " -n 2 " ELROM_RANKS " " + what + " > " +
+               (folder / "out").string() + " 2> " + (folder / "err").string());
+  }
+};
+
+TEST_F(Ranks, ARankIsFreeAgainAfterItsMonitorFailed) {
+  ASSERT_EQ(run_ranks("monitor"), 0) << errors();
+  EXPECT_EQ(test::read_bytes(folder / "out"), "caught disk full\nthen 10 epochs\n");
+}
+
+TEST_F(Ranks, ARankWithoutMemoryEndsTheJobInsteadOfHanging) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need more address space than any limit leaves";
+#endif
+  EXPECT_EQ(run_ranks("memory"), 1);
+  EXPECT_THAT(errors(), ::testing::HasSubstr("error: rank 1: a message from rank 0 broke off"));
+}
+
 /// The process of this rank in the job whose command line holds `mark`; 0 when there is none.
 pid_t process_of_rank(int rank, const std::string& mark) {
   for (const auto& entry : fs::directory_iterator("/proc")) {

@@ -58,7 +58,7 @@ TEST(SpreadFolds, TakeEveryNthLoad) {
 TEST(SpreadFolds, KeepCasesOfEqualInputsTogether) {
   CaseSet cases = test::toy_cases(6);
   for (const std::size_t i : {1U, 4U}) {
-    cases.loads[i] = cases.loads[0];
+    cases.loads[i] = i == 1 ? cases.loads[0] : NAN;  // of one of the repeated runs nobody wrote the load down
     cases.inputs.row(static_cast<Eigen::Index>(i)) = cases.inputs.row(0);
   }
 

@@ -3,6 +3,8 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -20,7 +22,9 @@ std::string head_of(const io::TensorFile& message) {
   Json tensors = Json::array();
   for (const auto& [name, tensor] : message.tensors())
     tensors.push_back({name, static_cast<int>(tensor.type()), tensor.shape()});
-  return Json{{"texts", message.texts()}, {"tensors", tensors}}.dump();
+  // The text of an error may name a file whose name is not UTF-8.
+  return Json{{"texts", message.texts()}, {"tensors", tensors}}.dump(-1, ' ', false,
+                                                                     Json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -82,7 +86,30 @@ void Channel::receive_bytes(int from, std::span<std::byte> bytes) {
   }
 }
 
+void Channel::abort(const std::string& why) noexcept {
+  std::fprintf(stderr, "error: rank %d: %s; the job ends, run it again to go on\n", rank_, why.c_str());
+  const std::scoped_lock lock(mutex_);
+  MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::internal));
+  std::abort();
+}
+
 void Channel::send(int to, const io::TensorFile& message) {
+  try {
+    send_whole(to, message);
+  } catch (const std::exception& error) {
+    abort(std::string("a message to rank ") + std::to_string(to) + " broke off: " + error.what());
+  }
+}
+
+io::TensorFile Channel::receive(int from) {
+  try {
+    return receive_whole(from);
+  } catch (const std::exception& error) {
+    abort(std::string("a message from rank ") + std::to_string(from) + " broke off: " + error.what());
+  }
+}
+
+void Channel::send_whole(int to, const io::TensorFile& message) {
   const auto head = head_of(message);
   const std::uint64_t length = head.size();
   send_bytes(to, std::as_bytes(std::span(&length, 1)));
@@ -100,7 +127,7 @@ std::optional<io::TensorFile> Channel::poll(int from) {
   return receive(from);
 }
 
-io::TensorFile Channel::receive(int from) {
+io::TensorFile Channel::receive_whole(int from) {
   std::uint64_t length = 0;
   receive_bytes(from, std::as_writable_bytes(std::span(&length, 1)));
   std::string text(length, '\0');

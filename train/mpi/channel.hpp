@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "elrom/io/tensor_file.hpp"
@@ -34,15 +35,21 @@ class Channel {
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int size() const { return size_; }
 
-  /// Returns when the other side has taken it.
+  /// Returns when the other side has taken it. A message that breaks off in the middle (for want of memory)
+  /// cannot be taken up again: it ends the job, with one line on standard error, as it would hang otherwise.
   void send(int to, const io::TensorFile& message);
   [[nodiscard]] io::TensorFile receive(int from);
   /// nullopt when nothing has come yet.
   [[nodiscard]] std::optional<io::TensorFile> poll(int from);
 
+  /// Ends every process of the job, with one line on standard error.
+  [[noreturn]] void abort(const std::string& why) noexcept;
+
  private:
   template <class Start>
   void transfer(const Start& start);
+  void send_whole(int to, const io::TensorFile& message);
+  [[nodiscard]] io::TensorFile receive_whole(int from);
   void send_bytes(int to, std::span<const std::byte> bytes);
   void receive_bytes(int from, std::span<std::byte> bytes);
 

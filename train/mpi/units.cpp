@@ -53,19 +53,23 @@ io::TensorFile to_message(const TrainUnit& unit) {
   unit_message.set_text("unit", Json{{"max_epochs", unit.budget.max_epochs},
                                      {"patience", unit.budget.patience},
                                      {"seed", unit.seed.value()},
-                                     {"monitored", unit.monitored},
-                                     {"checkpoint", unit.checkpoint}}
+                                     {"monitored", unit.monitored}}
                                     .dump());
+  // Bytes, not JSON: a folder's name need not be UTF-8.
+  const auto path = std::span(unit.checkpoint.data(), unit.checkpoint.size());
+  const auto bytes = std::vector<std::uint8_t>(path.begin(), path.end());
+  unit_message.set("checkpoint", io::Tensor::copy(bytes, {bytes.size()}));
   return unit_message;
 }
 
 TrainUnit train_unit_of(const io::TensorFile& message) {
   const auto json = Json::parse(message.text("unit"));
+  const auto path = message.tensor("checkpoint").u8();
   return {.hyperparameters = study::hyperparameters_of(message),
           .budget = {json.at("max_epochs"), json.at("patience")},
           .seed = base::Seed(json.at("seed").get<std::uint64_t>()),
           .monitored = json.at("monitored"),
-          .checkpoint = json.at("checkpoint")};
+          .checkpoint = {path.begin(), path.end()}};
 }
 
 void add_data(io::TensorFile& message, const study::TrainingProblem& problem) {

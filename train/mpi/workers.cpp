@@ -1,6 +1,7 @@
 #include "workers.hpp"
 
 #include <atomic>
+#include <exception>
 #include <utility>
 
 #include "units.hpp"
@@ -8,10 +9,21 @@
 namespace elrom::mpi {
 namespace {
 
-/// Sends a unit and sees it through. @param monitor may be missing
+/// Sends a unit and sees it through, so that the rank is free for the next one also when `monitor` (which may
+/// be missing) or the unit throws.
 io::TensorFile converse(Channel& channel, int rank, const io::TensorFile& unit,
                         study::TrainingMonitor* monitor, const std::stop_token& stop) {
   channel.send(rank, unit);
+  std::exception_ptr failure_here;
+  const auto goes_on = [&](const io::TensorFile& report) {
+    const auto epoch = report.tensor("epoch").f64();
+    try {
+      return monitor == nullptr || monitor->keep_going(static_cast<int>(epoch[0]), epoch[1]);
+    } catch (...) {
+      failure_here = std::current_exception();
+      return false;
+    }
+  };
   Patience patience;
   for (bool told = false;;) {
     const auto answer = channel.poll(rank);
@@ -23,11 +35,13 @@ io::TensorFile converse(Channel& channel, int rank, const io::TensorFile& unit,
     }
     patience = {};
     const auto& about = answer->text("kind");
+    if (about == kind::epoch) {
+      channel.send(rank, message(goes_on(*answer) ? kind::go_on : kind::give_up));
+      continue;
+    }
+    if (failure_here != nullptr) std::rethrow_exception(failure_here);
     if (about == kind::failure) rethrow(*answer, rank);
-    if (about == kind::result) return *answer;
-    const auto epoch = answer->tensor("epoch").f64();
-    const bool goes_on = monitor == nullptr || monitor->keep_going(static_cast<int>(epoch[0]), epoch[1]);
-    channel.send(rank, message(goes_on ? kind::go_on : kind::give_up));
+    return *answer;
   }
 }
 

@@ -121,14 +121,18 @@ std::unique_ptr<study::Workers> World::workers() const { return make_workers(imp
 
 void World::serve(const std::function<std::shared_ptr<const study::Trainer>()>& make_trainer,
                   const std::stop_token& stop) const {
-  Worker worker(impl_->channel, make_trainer, stop);
-  for (;;) {
-    const auto word = impl_->channel.receive(0);
-    const auto& about = word.text("kind");
-    if (about == kind::end) return;
-    // A stop may cross the answer of a unit that had just ended.
-    if (about == kind::stop) continue;
-    impl_->channel.send(0, worker.answer(word));
+  try {
+    Worker worker(impl_->channel, make_trainer, stop);
+    for (;;) {
+      const auto word = impl_->channel.receive(0);
+      const auto& about = word.text("kind");
+      if (about == kind::end) return;
+      // A stop may cross the answer of a unit that had just ended.
+      if (about == kind::stop) continue;
+      impl_->channel.send(0, worker.answer(word));
+    }
+  } catch (const std::exception& error) {
+    impl_->channel.abort(error.what());
   }
 }
 

@@ -45,14 +45,20 @@ Folds spread_folds(const CaseSet& cases, std::span<const std::size_t> rows, std:
     const auto values = cases.inputs.row(static_cast<Eigen::Index>(row));
     return std::vector<double>(values.begin(), values.end());
   };
-  std::map<std::pair<double, std::vector<double>>, std::vector<std::size_t>> groups;  // of equal inputs, by load
-  for (const std::size_t row : rows) groups[{place_of(cases.loads[row]), inputs(row)}].push_back(row);
+  std::map<std::vector<double>, std::vector<std::size_t>> groups;  // of equal inputs, whatever load they state
+  for (const std::size_t row : rows) groups[inputs(row)].push_back(row);
   if (groups.size() < 2) return load_grouped_folds(cases.loads, rows, n_folds, rows.size());
+  std::multimap<double, const std::vector<std::size_t>*> by_load;
+  for (const auto& [values, group] : groups) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const std::size_t row : group) lowest = std::min(lowest, place_of(cases.loads[row]));
+    by_load.emplace(lowest, &group);
+  }
   Folds folds(possible_folds(n_folds, groups.size()));
   std::size_t i = 0;
-  for (const auto& [place, group] : groups) {
+  for (const auto& [load, group] : by_load) {
     auto& fold = folds[i++ % folds.size()];
-    fold.insert(fold.end(), group.begin(), group.end());
+    fold.insert(fold.end(), group->begin(), group->end());
   }
   for (auto& fold : folds) std::sort(fold.begin(), fold.end());
   return folds;

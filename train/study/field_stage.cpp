@@ -46,6 +46,7 @@ MatrixF residuals_of_new_cases(const FieldStageRequest& request, const AutoFit& 
     const auto weight = static_cast<float>(fit.candidates[i].weight);
     if (weight > 0) residuals -= weight * request.candidates[i]->cross_predict(data, folds, context);
   }
+  if (!residuals.allFinite()) throw NumericalError("a model of other folds predicts numbers that are not finite");
   return residuals;
 }
 
@@ -71,10 +72,15 @@ io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& co
                        : fit_alone(request, rows, context);
   io::TensorFile file;
   if (request.n_folds > 0) {
-    model::Uncertainty(residuals_of_new_cases(request, fit, rows, context), data.cases->mesh.n_columns,
-                       data.cases->inputs)
-        .save(file, "uncertainty");
-    file.set_text("has_uncertainty", "yes");
+    try {
+      model::Uncertainty(residuals_of_new_cases(request, fit, rows, context), data.cases->mesh.n_columns,
+                         data.cases->inputs)
+          .save(file, "uncertainty");
+      file.set_text("has_uncertainty", "yes");
+    } catch (const NumericalError& error) {
+      // The field itself is sound: intervals that cannot be scored are left out, and that is told.
+      context.log->warning(data.info.name + ": no intervals, for " + error.what());
+    }
   }
   fit.model->save(file, "model");
   file.set_text("accuracy", accuracy_of(request.name, fit).dump());
@@ -86,7 +92,7 @@ io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& co
 std::string digest_of(const FieldStageRequest& request, const FitContext& context) {
   base::Sha256 digest;
   digest.add(data_digest(request.data, math::all_rows(request.data.cases->n_cases())));
-  digest.add(request.name).add(request.settings_digest);
+  digest.add(request.name).add(request.settings_digest).add("intervals on spread folds");
   for (const auto* method : request.candidates) digest.add(method->name());
   digest.add_value(context.seed.value()).add_value(request.n_folds);
   for (const auto& mirror : request.data.cases->mirrors) digest.add(mirror.name);

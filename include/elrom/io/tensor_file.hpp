@@ -61,6 +61,10 @@ class Tensor {
   const std::byte* data_ = nullptr;
 };
 
+/// Stands in a wanted shape for any size. Not 0: an empty tensor must not pass where 3 are wanted because
+/// another one, which gave the number, was empty too.
+inline constexpr std::size_t any_size = static_cast<std::size_t>(-1);
+
 /// Whether a tensor's bytes are compared with its digest each time it is fetched by name.
 enum class Verify { never, on_use };
 
@@ -80,7 +84,7 @@ class TensorFile {
   [[nodiscard]] const Tensor& tensor(std::string_view name) const;
   /// Several at once: their digests take half the time.
   [[nodiscard]] std::vector<Tensor> tensors(std::span<const std::string> names) const;
-  /// One, with its shape checked; 0 in `shape` stands for any size.
+  /// One, with its shape checked; `any_size` in `shape` stands for any.
   [[nodiscard]] const Tensor& tensor(std::string_view name, std::span<const std::size_t> shape) const;
   [[nodiscard]] const std::map<std::string, std::string>& texts() const { return texts_; }
   [[nodiscard]] bool has_text(std::string_view key) const { return texts_.contains(std::string(key)); }

@@ -32,8 +32,8 @@ class World {
   [[nodiscard]] std::unique_ptr<study::Workers> workers() const;
 
   /// Other ranks: trains what rank 0 asks for until it needs no more. An exception of a unit, or of
-  /// `make_trainer` (called with the first training), is sent to rank 0. @param stop ends the training in
-  /// hand
+  /// `make_trainer` (called with the first training), is sent to rank 0; any other ends the job, for rank 0
+  /// would wait for ever. @param stop ends the training in hand
   void serve(const std::function<std::shared_ptr<const study::Trainer>()>& make_trainer,
              const std::stop_token& stop) const;
 

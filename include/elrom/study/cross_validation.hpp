@@ -17,9 +17,9 @@ namespace elrom::study {
 [[nodiscard]] Folds load_grouped_folds(std::span<const double> loads, std::span<const std::size_t> cases,
                                        std::size_t n_folds, std::size_t blocks_per_fold = 2);
 
-/// Folds that take every n-th case in the order of loads: what is left out lies among what is left, as a new case among
-/// the cases of a study. Cases of equal inputs stay together,
-/// unless all are equal.
+/// Folds that take every n-th case in the order of loads: what is left out lies among what is left, as a new
+/// case lies among the cases of a study. Cases of equal inputs (repeated runs) stay together, unless all are
+/// equal.
 /// @param rows that take part @param n_folds, the return value and errors as above
 [[nodiscard]] Folds spread_folds(const CaseSet& cases, std::span<const std::size_t> rows, std::size_t n_folds);
 
