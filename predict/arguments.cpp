@@ -115,13 +115,21 @@ void add_run_options(CLI::App& app, Arguments& arguments, bool& no_verify, bool&
       ->capture_default_str();
   app.add_flag("--no-verify", no_verify, "do not compare the bundle's digests (saves a few milliseconds)");
   app.add_flag("--no-sync", no_sync,
-               "do not wait until the files are on the disk (saves some milliseconds a file; they may be lost with the power)");
-  app.add_flag("--timing", arguments.timing, "print where the time went");
+               "do not wait until the files are on the disk (saves some milliseconds a file; they may be "
+               "lost with the power)");
+  app.add_flag(
+      "--timing", arguments.timing,
+      "print where the time went; one step after the other, so that the whole takes a little longer");
 }
 
 void check_together(Arguments& arguments) {
   if (arguments.formats.empty())
     arguments.formats = {arguments.to_standard_output() ? Format::csv : Format::hdf};
+  std::vector<Format> once;
+  for (const auto format : arguments.formats) {
+    if (std::find(once.begin(), once.end(), format) == once.end()) once.push_back(format);
+  }
+  arguments.formats = std::move(once);
   if (arguments.cases.empty() && arguments.settings.empty()) {
     throw UsageError("nothing to predict; give --cases FILE, or every input by --set name=value");
   }

@@ -65,7 +65,8 @@ Cells choose_cells(const field::Mesh& mesh, std::vector<std::int32_t> planes, co
     for (std::size_t column = 0; column < mesh.n_columns; ++column) {
       if (box && !contains(*box, mesh, first + column)) continue;
       cells.rows.push_back(static_cast<std::int32_t>(first + column));
-      cells.cells.push_back(static_cast<std::int32_t>(static_cast<std::size_t>(plane) * mesh.n_columns + column));
+      cells.cells.push_back(
+          static_cast<std::int32_t>(static_cast<std::size_t>(plane) * mesh.n_columns + column));
       cells.sources.push_back(static_cast<std::int32_t>(cells.planes.size() * mesh.n_columns + column));
     }
     if (cells.cells.size() > before) cells.planes.push_back(plane);
@@ -104,8 +105,8 @@ PlaneAverage::PlaneAverage(const field::Mesh& mesh, const Cells& cells)
     moment[plane] += mesh.volume[static_cast<std::size_t>(row)] * mesh.centre(row, 2);
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    weight_[i] = mesh.volume[static_cast<std::size_t>(cells.rows[i])] /
-                 volume[static_cast<std::size_t>(plane_of_[i])];
+    weight_[i] =
+        mesh.volume[static_cast<std::size_t>(cells.rows[i])] / volume[static_cast<std::size_t>(plane_of_[i])];
   }
   for (std::size_t i = 0; i < heights_.size(); ++i) heights_[i] = static_cast<float>(moment[i] / volume[i]);
 }

@@ -275,7 +275,8 @@ void Session::predict_case(std::size_t i, Desk& desk, int n_threads) {
     return;
   }
   // A single case: its file is written while it is predicted. In a table every thread has a case of its own.
-  const bool at_once = n_threads > 1 && arguments_.writes(Format::hdf);
+  // With --timing one after the other, as what runs side by side has no time of its own.
+  const bool at_once = n_threads > 1 && arguments_.writes(Format::hdf) && !arguments_.timing;
   HdfFile hdf(hdf5_, [&] {
     auto file = file_for(Format::hdf, inputs);
     const auto path = file->temporary();

@@ -15,7 +15,8 @@ namespace elrom::predict {
 std::string Timing::text(std::size_t n_cases) const {
   constexpr double ms = 1e3;
   std::string text = fmt::format(
-      "time [ms]: open {:.2f}, read {:.2f}, prepare output {:.2f}, compute {:.2f}, write {:.2f}, whole run {:.2f}",
+      "time [ms]: open {:.2f}, read {:.2f}, prepare output {:.2f}, compute {:.2f}, write {:.2f}, whole run "
+      "{:.2f}",
       ms * open, ms * read, ms * prepare, ms * compute, ms * write, ms * wall);
   if (n_cases > 1) text += fmt::format(" ({:.4g} cases/s)", static_cast<double>(n_cases) / wall);
   return text;

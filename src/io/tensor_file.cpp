@@ -208,8 +208,15 @@ void TensorFile::write(const std::filesystem::path& path) const {
   auto digest = header_digest(format_header(header));
   header.metadata[std::string(header_digest_key)] = digest;
   const std::string json = format_header(header);
-  check(json.size() <= largest_header, "too many tensors for one file");
-
+  if (order.size() > most_tensors || json.size() > largest_header) {
+    throw UsageError({.what = "too many networks for one file",
+                      .where = path.string(),
+                      .found = std::to_string(order.size()) + " tensors in a header of " +
+                               std::to_string(json.size()) + " bytes",
+                      .expected = "at most " + std::to_string(most_tensors) + " tensors and " +
+                                  std::to_string(largest_header) + " bytes",
+                      .advice = "fewer builds, bands or blocks of columns"});
+  }
   base::AtomicFile target(path);
   std::ofstream stream(target.temporary(), std::ios::binary);
   const std::uint64_t length = json.size();

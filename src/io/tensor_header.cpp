@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t most_tensors = 16'384;
 constexpr std::size_t most_dimensions = 8;
 
 std::optional<DType> dtype_of(std::string_view name) {

@@ -16,6 +16,7 @@ inline constexpr std::string_view digest_prefix = "sha256:";
 inline constexpr std::string_view header_digest_key = "sha256:header";
 inline constexpr std::size_t digest_length = 64;
 inline constexpr std::uint64_t largest_header = std::uint64_t{4} << 20;
+inline constexpr std::size_t most_tensors = 16'384;
 
 /// Where a tensor lies behind the header.
 struct TensorEntry {

@@ -10,6 +10,7 @@
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/throws.hpp"
 
 namespace elrom::io {
 namespace {
@@ -245,6 +246,15 @@ TEST(TensorFile, MissingTensorNamesTheNearest) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("did you mean 'weights'?"));
   }
+}
+
+TEST(TensorFile, WritesNothingThatItWouldNotRead) {
+  const TemporaryFolder folder;
+  TensorFile file;
+  for (int i = 0; i <= 16'384; ++i) file.set("a" + std::to_string(i), Tensor::copy(std::array{1.0F}, {1}));
+
+  EXPECT_ERROR(UsageError, "16385 tensors", file.write(folder / "many"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "many"));
 }
 
 TEST(TensorFile, ShapeIsCheckedWithRoomForAnySize) {

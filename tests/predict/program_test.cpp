@@ -146,7 +146,7 @@ TEST_F(ProgramTest, StreamsTextToStandardOutput) {
 }
 
 TEST_F(ProgramTest, WritesEveryFormatAtOnce) {
-  ASSERT_EQ(predict(output("out") + " --case good --format hdf,csv,txt,ip --uncertainty 0.8").status, 0);
+  ASSERT_EQ(predict(output("out") + " --case good --format hdf,csv,hdf,txt,ip --uncertainty 0.8").status, 0);
 
   EXPECT_THAT(files_in("out"),
               ::testing::UnorderedElementsAre("good.hdf", "good.csv", "good.txt", "good.ip"));

@@ -1,6 +1,6 @@
 #pragma once
 // Units of training as messages, and the answers to them. The data of a unit travels only to a rank that does
-// not hold it yet: a rank keeps the last of each kind.
+// not hold it yet: a rank keeps what it was sent last.
 
 #include <memory>
 #include <string>

@@ -296,7 +296,8 @@ std::vector<SettingRow> make_rows() {
           "peers.networks", "networks compete in auto and get a bundle of their own",
           [](S & s) -> auto& { return s.peers.networks; }),
       whole(
-          "peers.folds", "load-grouped folds of auto's cross-validation",
+          "peers.folds",
+          "folds by load of auto's cross-validation, and as many spread folds that intervals are scored on",
           [](S & s) -> auto& { return s.peers.folds; }, 2, 1000),
   };
 }

@@ -72,7 +72,7 @@ enum class Verify { never, on_use };
 class TensorFile {
  public:
   TensorFile() = default;
-  /// Maps `path`; checks the whole header (no duplicate names, overlaps, holes, overflow; header <= 100 MB)
+  /// Maps `path`; checks the whole header (no duplicate names, overlaps, holes, overflow; header <= 4 MiB and 16,384 tensors)
   /// and its digest, but reads no tensor. @throws InputError naming the file, what was found and what was
   /// expected
   [[nodiscard]] static TensorFile open(const std::filesystem::path& path, Verify verify = Verify::never);
@@ -100,6 +100,7 @@ class TensorFile {
 
   /// Atomically. Tensors are laid out by falling alignment (64 bytes where the size allows, never below their
   /// element's) and then by name, without padding. The same content gives the same bytes.
+  /// @throws UsageError for more tensors than open() takes, SystemError when the disk does not take it
   void write(const std::filesystem::path& path) const;
 
   [[nodiscard]] const std::string& where() const { return where_; }  ///< path, for messages
