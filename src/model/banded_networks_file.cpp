@@ -41,7 +41,7 @@ std::vector<double> numbers(const io::TensorFile& file, const std::string& name)
 constexpr std::size_t size_limit = 10'000'000;
 
 std::size_t size_of(const Json& description, const char* key) {
-  const auto size = description.at(key).get<std::size_t>();
+  const auto size = whole_number<std::size_t>(description.at(key));
   if (size == 0 || size > size_limit) throw InputError({"size out of range", key, std::to_string(size)});
   return size;
 }

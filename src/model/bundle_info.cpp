@@ -90,8 +90,8 @@ BundleDescription bundle_description(const std::string& text, const std::string&
     }
     info.schema = field::InputSchema(std::move(inputs));
     const auto& mesh = json.at("mesh");
-    description.n_planes = mesh.at("n_planes").get<std::size_t>();
-    description.n_columns = mesh.at("n_columns").get<std::size_t>();
+    description.n_planes = whole_number<std::size_t>(mesh.at("n_planes"));
+    description.n_columns = whole_number<std::size_t>(mesh.at("n_columns"));
     description.mesh_digest = mesh.at("digest").get<std::string>();
     std::size_t n_cells = 0;
     if (__builtin_mul_overflow(description.n_planes, description.n_columns, &n_cells) || n_cells == 0 ||

@@ -33,8 +33,9 @@ Json to_json(const LinearForm& form) {
 }
 
 LinearForm form_of(const Json& json) {
-  return {json.at("inputs").get<std::vector<std::int32_t>>(), json.at("weights").get<std::vector<double>>(),
-          json.at("offset").get<double>()};
+  std::vector<std::int32_t> inputs;
+  for (const Json& input : json.at("inputs")) inputs.push_back(whole_number<std::int32_t>(input));
+  return {std::move(inputs), json.at("weights").get<std::vector<double>>(), json.at("offset").get<double>()};
 }
 
 Json to_json(const Feature& feature) {
@@ -131,7 +132,7 @@ FeatureMap FeatureMap::load(const io::TensorFile& file, const std::string& key) 
       for (const Json& term : entry.at("terms")) feature.terms.push_back(term_of(term));
       features.push_back(std::move(feature));
     }
-    return FeatureMap(std::move(features), json.at("n_inputs").get<std::size_t>());
+    return FeatureMap(std::move(features), whole_number<std::size_t>(json.at("n_inputs")));
   } catch (const Json::exception& error) {
     throw InputError({.what = "broken description of derived inputs",
                       .where = file.where() + ":" + key,

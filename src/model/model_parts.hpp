@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <utility>
 
+#include "elrom/base/error.hpp"
 #include "elrom/io/tensor_file.hpp"
 #include "elrom/math/standardiser.hpp"
 #include "elrom/model/field_model.hpp"
@@ -24,6 +26,18 @@ namespace elrom::model {
 /// nlohmann::json::parse for texts of a bundle, which may be made to do harm: a document costs up to fifty
 /// times its text. @throws InputError for more values, or deeper ones, than any bundle of ours holds
 [[nodiscard]] nlohmann::json parse_json(const std::string& text, bool with_exceptions = true);
+
+/// A whole number. nlohmann's own get() turns 2e199 into any int (undefined in C++).
+/// @throws InputError for a fraction, a text or a number that does not fit
+template <class Integer>
+[[nodiscard]] Integer whole_number(const nlohmann::json& value) {
+  if (value.is_number_unsigned() && std::in_range<Integer>(value.get<std::uint64_t>()))
+    return static_cast<Integer>(value.get<std::uint64_t>());
+  if (value.is_number_integer() && !value.is_number_unsigned() &&
+      std::in_range<Integer>(value.get<std::int64_t>()))
+    return static_cast<Integer>(value.get<std::int64_t>());
+  throw InputError({.what = "no whole number in the description of a model", .found = value.dump()});
+}
 
 /// The JSON object under `prefix`. @throws InputError naming file and key
 [[nodiscard]] nlohmann::json read_description(const io::TensorFile& file, const std::string& prefix);

@@ -55,6 +55,20 @@ TEST(FeatureMap, RefusesAnInputThatIsNotThere) {
                FeatureMap({{"x", {{Kind::value, 1, {{2}, {1}, 0}, {}, 0}}}}, 2));
 }
 
+// A fuzzer found that JSON's 2e199 became an index.
+TEST(FeatureMap, RefusesAnIndexThatIsNoWholeNumber) {
+  io::TensorFile good;
+  velocity_and_imbalance().save(good, "map");
+  const std::string text = good.text("map"), indices = R"("inputs":[0,1])";
+  for (const char* index : {"2e199", "0.5", "4294967296", "-4294967295", "\"a\""}) {
+    auto bad = text;
+    bad.replace(bad.find(indices), indices.size(), R"("inputs":[0,)" + std::string(index) + "]");
+    io::TensorFile file;
+    file.set_text("map", bad);
+    EXPECT_THROW((void)FeatureMap::load(file, "map"), InputError) << index;
+  }
+}
+
 TEST(FeatureMap, RefusesBrokenText) {
   io::TensorFile file;
   file.set_text("f", R"({"n_inputs": 2, "features": [{"name": "x"}]})");
