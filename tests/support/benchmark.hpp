@@ -78,6 +78,16 @@ inline rusage run_program(const std::filesystem::path& program, const std::vecto
   return usage;
 }
 
+/// A store of the full size, or of a small one, from elrom-data generate.
+inline std::filesystem::path generate_store(const std::filesystem::path& folder, bool small) {
+  const auto store = folder / "snapshots.h5";
+  run_program(sibling("elrom-data"),
+              {"generate", "--cases", small ? "20" : "249", "--planes", small ? "6" : "66", "--columns",
+               small ? "40" : "840", "--fields", small ? "2" : "9", "--inputs", "26", "--seed", "1", "--store",
+               store.string()});
+  return store;
+}
+
 /// Body of a benchmark's main: parses, measures, prints and writes the figures.
 template <class Measure>
 int benchmark_main(const std::string& name, const std::string& what, const std::string& store_help, int argc,
