@@ -83,15 +83,20 @@ TEST_F(Ranks, ARankWithoutMemoryEndsTheJobInsteadOfHanging) {
   EXPECT_THAT(errors(), ::testing::HasSubstr("error: rank 1: a message from rank 0 broke off"));
 }
 
-/// The process of this rank in the job whose command line holds `mark`; 0 when there is none.
+constexpr int launcher = -1;
+
+/// The process of this rank, or the launcher, in the job whose command line holds `mark`; 0 when there is
+/// none.
 pid_t process_of_rank(int rank, const std::string& mark) {
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const auto name = entry.path().filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const auto command = test::read_bytes(entry.path() / "cmdline");
     const auto environment = test::read_bytes(entry.path() / "environ");
-    if (command.find(mark) != std::string::npos && command.find("elrom-train") != std::string::npos &&
-        environment.find("OMPI_COMM_WORLD_RANK=" + std::to_string(rank)) != std::string::npos)
+    const bool is_it = rank == launcher ? command.starts_with(std::string(ELROM_MPIEXEC) + '\0')
+                                        : environment.find("OMPI_COMM_WORLD_RANK=" + std::to_string(rank)) !=
+                                              std::string::npos;
+    if (is_it && command.find(mark) != std::string::npos && command.find("elrom-train") != std::string::npos)
       return std::stoi(name);
   }
   return 0;
@@ -140,6 +145,11 @@ class HitJob : public World {
 TEST_F(HitJob, ARankThatDiesEndsInAnErrorAndAStudyThatGoesOn) {
   EXPECT_NE(hit(1, SIGKILL), 0);
   EXPECT_THAT(errors(), ::testing::HasSubstr("rank 1"));
+  expect_that_the_study_goes_on();
+}
+
+TEST_F(HitJob, CtrlCAtTheLauncherLeavesAStudyThatGoesOn) {
+  EXPECT_NE(hit(launcher, SIGINT), 0);
   expect_that_the_study_goes_on();
 }
 
