@@ -28,7 +28,14 @@ if(ELROM_HDF5_ARCHIVE AND ELROM_SZ_ARCHIVE AND ELROM_AEC_ARCHIVE)
   endif()
   set_target_properties(elrom_hdf5_archive PROPERTIES IMPORTED_LOCATION ${ELROM_HDF5_ARCHIVE} INTERFACE_LINK_LIBRARIES
     "${ELROM_SZ_ARCHIVE};${ELROM_AEC_ARCHIVE};ZLIB::ZLIB;OpenSSL::Crypto;${CMAKE_DL_LIBS};m")
-  set_target_properties(PkgConfig::HDF5_SERIAL PROPERTIES INTERFACE_LINK_LIBRARIES elrom_hdf5_archive)
+  # Archives of some systems need more than this (Debian 13's: curl); those link the shared one.
+  include(CheckCXXSourceCompiles)
+  set(CMAKE_REQUIRED_LIBRARIES elrom_hdf5_archive)
+  check_cxx_source_compiles("extern \"C\" int H5open(void); int main() { return H5open(); }" ELROM_HDF5_ARCHIVE_LINKS)
+  unset(CMAKE_REQUIRED_LIBRARIES)
+  if(ELROM_HDF5_ARCHIVE_LINKS)
+    set_target_properties(PkgConfig::HDF5_SERIAL PROPERTIES INTERFACE_LINK_LIBRARIES elrom_hdf5_archive)
+  endif()
 endif()
 
 if(NOT elrom_FIND_COMPONENTS OR "study" IN_LIST _elrom_wanted)

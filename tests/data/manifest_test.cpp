@@ -25,7 +25,7 @@ TEST(Manifest, DigestsAreThoseOfTheFiles) {
   const auto whole = manifest();
   for (const auto& entry : whole["cases"]) {
     const auto path = data_folder / "cases" / entry["file"].get<std::string>();
-    EXPECT_EQ(base::sha256_file(path), entry["sha256"]) << path;
+    EXPECT_EQ(base::sha256_file(path), entry["sha256"].get<std::string>()) << path;
   }
 }
 
