@@ -93,9 +93,13 @@ pid_t process_of_rank(int rank, const std::string& mark) {
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const auto command = test::read_bytes(entry.path() / "cmdline");
     const auto environment = test::read_bytes(entry.path() / "environ");
-    const bool is_it = rank == launcher ? command.starts_with(std::string(ELROM_MPIEXEC) + '\0')
-                                        : environment.find("OMPI_COMM_WORLD_RANK=" + std::to_string(rank)) !=
-                                              std::string::npos;
+    const auto rank_is =
+        environment.find("OMPI_COMM_WORLD_RANK=" + (rank == launcher ? "" : std::to_string(rank)));
+    const auto program = fs::path(command.substr(0, command.find('\0'))).filename();
+    // The launcher is what is neither a rank nor the shell before it; it may go by another name than it was
+    // called.
+    const bool is_it =
+        rank == launcher ? rank_is == std::string::npos && program != "sh" : rank_is != std::string::npos;
     if (is_it && command.find(mark) != std::string::npos && command.find("elrom-train") != std::string::npos)
       return std::stoi(name);
   }
