@@ -83,5 +83,19 @@ TEST(HdfWriter, SameContentGivesSameBytes) {
   EXPECT_EQ(test::read_bytes(folder / "a"), test::read_bytes(folder / "b"));
 }
 
+TEST(HdfWriter, TheOrderInWhichFieldsBecomeReadyDoesNotChangeTheBytes) {
+  const test::TemporaryFolder folder;
+  const test::SampleRun sample;
+  const auto prediction = sample.prediction();
+  write_hdf(sample.run, prediction, folder / "a");
+
+  HdfWriter writer(sample.run, *prediction.inputs, *prediction.assessment, folder / "b");
+  writer.write_field(prediction, 1);
+  writer.write_field(prediction, 0);
+  writer.finish(prediction);
+
+  EXPECT_EQ(test::read_bytes(folder / "a"), test::read_bytes(folder / "b"));
+}
+
 }  // namespace
 }  // namespace elrom::predict

@@ -297,7 +297,7 @@ std::vector<SettingRow> make_rows() {
           [](S & s) -> auto& { return s.peers.networks; }),
       whole(
           "peers.folds",
-          "folds by load of auto's cross-validation, and as many spread folds that intervals are scored on",
+          "folds by load of auto's cross-validation; intervals are scored on twice as many, spread ones",
           [](S & s) -> auto& { return s.peers.folds; }, 2, 1000),
   };
 }
