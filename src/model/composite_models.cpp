@@ -27,14 +27,17 @@ std::size_t count_of(const nlohmann::json& description, const std::string& key, 
 }  // namespace
 
 BlendModel::BlendModel(std::vector<Part> parts, const std::string& where) : parts_(std::move(parts)) {
-  const bool fits = !parts_.empty() && std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-    return std::isfinite(part.weight) && part.model->n_inputs() == n_inputs() &&
-           part.model->n_planes() == n_planes() && part.model->n_columns() == n_columns();
-  });
-  if (!fits) {
+  const auto fits = [this](const Part& part) {
+    return part.model->n_inputs() == n_inputs() && part.model->n_planes() == n_planes() &&
+           part.model->n_columns() == n_columns() &&
+           (part.weights.size() == 1 || part.weights.size() == n_columns()) &&
+           std::ranges::all_of(part.weights, [](double weight) { return std::isfinite(weight); });
+  };
+  if (parts_.empty() || !std::ranges::all_of(parts_, fits)) {
     throw InputError({.what = "blend of models that do not fit together",
                       .where = where,
-                      .expected = "at least one model, finite weights, the same inputs, planes and columns"});
+                      .expected = "at least one model, the same inputs, planes and columns, finite weights: "
+                                  "one a model or one a column"});
   }
 }
 
@@ -45,33 +48,47 @@ void BlendModel::predict(const Query& query, std::span<float> values, std::span<
   for (const Part& part : parts_) {
     const Workspace::Frame frame(workspace);
     const std::span<float> own = workspace.floats(values.size()),
-                           own_spread = workspace.floats(spread.size());
+                           own_spread = workspace.floats(spread.size()),
+                           weights = workspace.floats(n_columns());
     part.model->predict(query, own, own_spread, workspace);
-    const auto weight = static_cast<float>(part.weight);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * own[i];
-    for (std::size_t i = 0; i < spread.size(); ++i) spread[i] += std::abs(weight) * own_spread[i];
+    for (std::size_t c = 0; c < weights.size(); ++c)
+      weights[c] = static_cast<float>(part.weights.size() == 1 ? part.weights.front() : part.weights[c]);
+    for (std::size_t first = 0; first < values.size(); first += n_columns())
+      for (std::size_t c = 0; c < weights.size(); ++c) values[first + c] += weights[c] * own[first + c];
+    for (std::size_t first = 0; first < spread.size(); first += n_columns())
+      for (std::size_t c = 0; c < weights.size(); ++c)
+        spread[first + c] += std::abs(weights[c]) * own_spread[first + c];
   }
 }
 
 void BlendModel::save(io::TensorFile& file, const std::string& prefix) const {
   file.set_text(prefix, nlohmann::json{{"kind", kind()}, {"parts", parts_.size()}}.dump());
-  Eigen::VectorXd weights(static_cast<Eigen::Index>(parts_.size()));
+  const bool by_column = std::ranges::any_of(parts_, [](const Part& p) { return p.weights.size() > 1; });
+  std::vector<double> weights;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    weights[static_cast<Eigen::Index>(i)] = parts_[i].weight;
+    const auto& own = parts_[i].weights;
+    weights.insert(weights.end(), by_column && own.size() == 1 ? n_columns() : 1, own.front());
+    if (own.size() > 1) weights.insert(weights.end(), own.begin() + 1, own.end());
     parts_[i].model->save(file, prefix + "/part" + std::to_string(i));
   }
-  save_vector(file, prefix + "/weights", weights);
+  std::vector<std::size_t> shape{parts_.size()};
+  if (by_column) shape.push_back(n_columns());
+  file.set(prefix + "/weights", io::Tensor::copy(std::span<const double>(weights), shape));
 }
 
 std::unique_ptr<FieldModel> BlendModel::load(const io::TensorFile& file, const std::string& prefix,
                                              const Wanted& wanted) {
   const std::string where = file.where() + ":" + prefix;
   const std::size_t n = count_of(read_description(file, prefix), "parts", where);
-  const Eigen::VectorXd weights = load_vector(file, prefix + "/weights", n);
+  std::vector<std::size_t> shape{n};
+  if (file.tensor(prefix + "/weights").shape().size() > 1) shape.push_back(io::any_size);
+  const std::span<const double> weights = file.tensor(prefix + "/weights", shape).f64();
+  const auto per_part = static_cast<std::ptrdiff_t>(weights.size() / n);
   std::vector<Part> parts;
   for (std::size_t i = 0; i < n; ++i) {
-    parts.push_back({weights[static_cast<Eigen::Index>(i)],
-                     load_field_model(file, prefix + "/part" + std::to_string(i), wanted)});
+    const auto first = weights.begin() + static_cast<std::ptrdiff_t>(i) * per_part;
+    parts.push_back(
+        {{first, first + per_part}, load_field_model(file, prefix + "/part" + std::to_string(i), wanted)});
   }
   return std::make_unique<BlendModel>(std::move(parts), where);
 }

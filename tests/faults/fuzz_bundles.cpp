@@ -96,7 +96,7 @@ std::map<std::string, Model> models_of(study::CaseSet& cases, const study::Field
   models["mirror"] = std::make_shared<model::MirrorModel>(
       models["linear"], field::symmetry_group(cases.mirrors, 3, 4), data.info.parity, 2);
   models["blend"] = std::make_shared<model::BlendModel>(
-      std::vector<model::BlendModel::Part>{{0.5, models["nearest"]}, {0.5, models["pod_mlp"]}});
+      std::vector<model::BlendModel::Part>{{{0.5}, models["nearest"]}, {{0.5}, models["pod_mlp"]}});
   return models;
 }
 

@@ -51,6 +51,12 @@ std::shared_ptr<CoefficientModel> coefficients(const std::string& kind) {
                                            p.ones);
 }
 
+std::vector<double> column_weights() {
+  std::vector<double> weights(n_columns);
+  for (std::size_t c = 0; c < n_columns; ++c) weights[c] = 0.5 - 0.1 * static_cast<double>(c);
+  return weights;
+}
+
 std::shared_ptr<FieldModel> make(const std::string& kind) {
   if (kind == "nearest") {
     const Parts p;
@@ -59,7 +65,11 @@ std::shared_ptr<FieldModel> make(const std::string& kind) {
   }
   if (kind == "blend") {
     return std::make_shared<BlendModel>(
-        std::vector<BlendModel::Part>{{0.25, make("linear")}, {0.75, make("pod_rbf")}});
+        std::vector<BlendModel::Part>{{{0.25}, make("linear")}, {{0.75}, make("pod_rbf")}});
+  }
+  if (kind == "blend_by_column") {
+    return std::make_shared<BlendModel>(
+        std::vector<BlendModel::Part>{{column_weights(), make("linear")}, {{0.75}, make("pod_rbf")}});
   }
   const Eigen::VectorXd mean = random_matrix(n_planes * n_columns, 1, "mean");
   const MatrixF modes = random_matrix(n_modes, n_planes * n_columns, "modes").cast<float>();
@@ -84,7 +94,7 @@ const std::vector<std::int32_t> every_plane{0, 1, 2, 3, 4};
 class EveryModel : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Peers, EveryModel,
                          ::testing::Values("nearest", "linear", "pod_gp", "pod_gp_per_mode", "pod_rbf",
-                                           "blend"));
+                                           "blend", "blend_by_column"));
 
 TEST_P(EveryModel, IsTheSameAfterSaveAndLoad) {
   const auto model = make(GetParam());
@@ -93,7 +103,7 @@ TEST_P(EveryModel, IsTheSameAfterSaveAndLoad) {
   model->save(file, "fields/pressure");
   const auto loaded = load_field_model(file, "fields/pressure");
 
-  EXPECT_EQ(loaded->kind(), GetParam());
+  EXPECT_EQ(loaded->kind(), model->kind());
   EXPECT_EQ(ask(*loaded, every_plane), ask(*model, every_plane));
 }
 
@@ -201,6 +211,28 @@ TEST(BlendModel, IsTheWeightedSum) {
     EXPECT_NEAR(blend.values[i], 0.25 * a.values[i] + 0.75 * b.values[i], 1e-5);
     EXPECT_NEAR(blend.spread[i], 0.25 * a.spread[i] + 0.75 * b.spread[i], 1e-5);
   }
+}
+
+TEST(BlendModel, WeighsEveryColumnByItself) {
+  const Answer blend = ask(*make("blend_by_column"), every_plane), a = ask(*make("linear"), every_plane),
+               b = ask(*make("pod_rbf"), every_plane);
+  const auto weights = column_weights();
+
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    const double weight = weights[i % n_columns];
+    EXPECT_NEAR(blend.values[i], weight * a.values[i] + 0.75 * b.values[i], 1e-5);
+    EXPECT_NEAR(blend.spread[i], std::abs(weight) * a.spread[i] + 0.75 * b.spread[i], 1e-5);
+  }
+}
+
+TEST(BlendModel, RefusesWeightsForOtherColumns) {
+  EXPECT_ERROR(InputError, "one a column",
+               BlendModel({{std::vector<double>(n_columns + 1, 0.5), make("linear")}}));
+  EXPECT_ERROR(InputError, "one a column", BlendModel({{{}, make("linear")}}));
+  io::TensorFile file;
+  make("blend_by_column")->save(file, "m");
+  file.set("m/weights", io::Tensor::copy(std::span<const double>(std::vector<double>(6, 0.5)), {2, 3}));
+  EXPECT_ERROR(InputError, "one a column", load_field_model(file, "m"));
 }
 
 TEST(BlendModel, RefusesAnAbsurdNumberOfParts) {

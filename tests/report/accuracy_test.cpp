@@ -127,6 +127,22 @@ TEST_F(Accuracy, JsonHoldsEveryFieldMethodAndCase) {
   EXPECT_EQ(root["cases"][0]["audit_prediction"]["planes"].size(), 5u);
 }
 
+TEST_F(Accuracy, ChoiceIsToldAsTheBundleHasIt) {
+  const auto& field = report_->fields[0];
+  ASSERT_EQ(field.choice.candidates.size(), 3u);
+  EXPECT_EQ(field.methods[0].detail, "nearest case 0.25, linear 0.75");
+  EXPECT_TRUE(report_->fields[1].choice.candidates.empty());
+
+  const auto root = nlohmann::json::parse(to_json(*report_))["fields"][0]["choice"];
+  EXPECT_EQ(root["nrmse"], 0.4);
+  EXPECT_EQ(root["nrmse_by_band"], 0.39);
+  EXPECT_EQ(root["candidates"][1]["weight"], 0.75);
+  EXPECT_TRUE(root["candidates"][2]["nrmse"].is_null());
+  const auto page = html_page(*report_);
+  const auto section = page.substr(page.find("id=\"choice\""));
+  EXPECT_THAT(section, HasSubstr("<td class=\"mark best\">0.450</td><td class=\"mark\">-</td>"));
+}
+
 TEST_F(Accuracy, CsvHasOneLineAFieldMethodAndCase) {
   const auto text = to_csv(*report_);
 
@@ -143,6 +159,17 @@ TEST_F(Accuracy, PageNeedsNothingFromOutside) {
   for (const auto* broken : {"Mnan", "Lnan", " nan", "=\"nan", ">nan<", ">inf<", "Minf", "Linf"})
     EXPECT_THAT(page, Not(HasSubstr(broken)));
   EXPECT_LT(page.size(), 8u << 20);
+}
+
+TEST_F(Accuracy, EveryLinkOfThePageHasItsTarget) {
+  const auto page = html_page(*report_);
+  std::size_t links = 0;
+  for (auto at = page.find("href=\"#"); at != std::string::npos;
+       at = page.find("href=\"#", at + 1), ++links) {
+    const auto begin = at + 7;
+    EXPECT_THAT(page, HasSubstr("id=\"" + page.substr(begin, page.find('"', begin) - begin) + "\""));
+  }
+  EXPECT_GE(links, 8u);
 }
 
 TEST_F(Accuracy, PageEscapesNamesFromOutside) {

@@ -135,7 +135,7 @@ Fit fit_by(std::shared_ptr<const study::Method> method) {
 std::unique_ptr<model::FieldModel> fit_blend(const study::FieldData& data, const study::FitContext& context) {
   std::vector<model::BlendModel::Part> parts;
   for (const std::string name : {"linear", "pod_rbf"})
-    parts.push_back({0.5, fit_with(*study::make_peer(name), data, context)});
+    parts.push_back({{0.5}, fit_with(*study::make_peer(name), data, context)});
   return std::make_unique<model::BlendModel>(std::move(parts));
 }
 

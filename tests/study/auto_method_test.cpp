@@ -2,49 +2,28 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "elrom/base/error.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/study/cross_validation.hpp"
 #include "elrom/study/peers.hpp"
+#include "support/fake_method.hpp"
 #include "support/throws.hpp"
 #include "support/toy_furnace.hpp"
 
 namespace elrom::study {
 namespace {
 
-/// Predicts the truth plus a given error pattern; fits to the nearest peer, which nobody asks.
-class Fake final : public Method {
- public:
-  Fake(std::string name, MatrixF errors) : name_(std::move(name)), errors_(std::move(errors)) {}
-  [[nodiscard]] std::string name() const override { return name_; }
-  [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const FieldData& data,
-                                                       std::span<const std::size_t> cases,
-                                                       const FitContext& context) const override {
-    return make_peer("nearest")->fit(data, cases, context);
-  }
-  [[nodiscard]] MatrixF cross_predict(const FieldData& data, const Folds&, const FitContext&) const override {
-    if (errors_.size() == 0) throw NumericalError("it diverged");
-    return data.values - errors_;
-  }
-
- private:
-  std::string name_;
-  MatrixF errors_;
-};
-
-MatrixF noise(const FieldData& data, std::string_view name, double size) {
-  base::Random random(base::Seed(41).derive(name));
-  MatrixF errors(data.values.rows(), data.values.cols());
-  for (Eigen::Index i = 0; i < errors.size(); ++i)
-    errors.data()[i] = static_cast<float>(size * random.normal());
-  return errors;
-}
+using test::lopsided;
+using test::noise;
+using Fake = test::FakeMethod;
 
 struct Contest {
   CaseSet cases = test::toy_cases(10);
   FieldData data = test::toy_field(cases);
-  AutoFit run(const std::vector<const Method*>& candidates) {
-    return fit_auto(data, math::all_rows(10), candidates, {}, {});
+  AutoFit run(const std::vector<const Method*>& candidates, const AutoOptions& options = {}) {
+    return fit_auto(data, math::all_rows(10), candidates, options, {});
   }
 };
 
@@ -102,6 +81,55 @@ TEST(Auto, DoesNotBlendForTheSakeOfOneCase) {
   EXPECT_EQ(fit.candidates[0].weight, 1);
   EXPECT_EQ(fit.candidates[1].weight, 0);
   EXPECT_NEAR(fit.nrmse, fit.candidates[0].nrmse, 1e-9);
+}
+
+TEST(Auto, WeighsBandsByThemselvesWhereThatPays) {
+  // Each is right in its own half; "right" is better on the whole, and its error sorts columns into two
+  // bands.
+  Contest contest;
+  const Fake left("left", 1.1F * lopsided(contest.data, "a", 0.1F)),
+      right("right", lopsided(contest.data, "b", 10));
+
+  const AutoFit fit = contest.run({&left, &right});
+
+  const std::size_t n = contest.cases.mesh.n_columns;
+  ASSERT_EQ(fit.candidates[0].column_weights.size(), n);
+  EXPECT_EQ(fit.candidates[0].column_weights.front(), 1);
+  EXPECT_EQ(fit.candidates[0].column_weights.back(), 0);
+  EXPECT_EQ(fit.candidates[1].column_weights.front(), 0);
+  EXPECT_EQ(fit.candidates[1].column_weights.back(), 1);
+  EXPECT_EQ(fit.candidates[0].weight, 0.5);
+  EXPECT_LT(fit.nrmse, 0.1 * fit.candidates[1].nrmse);
+  EXPECT_EQ(fit.nrmse, fit.nrmse_by_band);
+  EXPECT_EQ(fit.model->kind(), "blend");
+}
+
+TEST(Auto, WeighsAllColumnsAlikeWhereBandsGainNothing) {
+  // Two bands by the error of both, and the same winner in each.
+  Contest contest;
+  const MatrixF base = lopsided(contest.data, "a", 10);
+  const Fake good("good", base), bad("bad", 3 * base);
+
+  const AutoFit fit = contest.run({&bad, &good});
+
+  EXPECT_TRUE(std::isfinite(fit.nrmse_by_band));
+  EXPECT_TRUE(fit.candidates[1].column_weights.empty());
+  EXPECT_EQ(fit.model->kind(), "nearest");
+}
+
+TEST(Auto, ColumnsThatAllGetRightAskForNoFurtherMembers) {
+  Contest contest;
+  const auto n_columns = static_cast<Eigen::Index>(contest.cases.mesh.n_columns);
+  MatrixF left = 1.1F * lopsided(contest.data, "a", 0.1F), right = lopsided(contest.data, "b", 10),
+          third = 100 * left;
+  for (Eigen::Index c = 0; c < left.cols(); c += n_columns)  // column 0: a band by itself
+    for (MatrixF* errors : {&left, &right, &third}) errors->col(c).setZero();
+  const Fake a("left", left), b("right", right), c("third", third);
+
+  const AutoFit fit = contest.run({&a, &b, &c}, {.band_edges = {1e-9, 0.3}});
+
+  EXPECT_FALSE(fit.candidates[0].column_weights.empty());
+  EXPECT_EQ(fit.candidates[2].weight, 0);
 }
 
 TEST(Auto, ACandidateThatDivergesOnlyLoses) {

@@ -68,6 +68,13 @@ Json field_node(const AccuracyReport& report, const FieldAccuracy& field) {
   for (std::size_t m = 0; m < report.methods.size(); ++m)
     node["methods"].push_back(method_on_field(report, field, m));
   if (const auto best = report.best_peer(field)) node["best_peer"] = report.methods[*best].file.name;
+  Json candidates = Json::array();
+  for (const auto& candidate : field.choice.candidates)
+    candidates.push_back(
+        {{"method", candidate.name}, {"nrmse", number(candidate.nrmse)}, {"weight", candidate.weight}});
+  node["choice"] = {{"nrmse", number(field.choice.nrmse)},
+                    {"nrmse_by_band", number(field.choice.nrmse_by_band)},
+                    {"candidates", std::move(candidates)}};
   node["error_budget"] = {{"noise", !field.noise.empty() ? number(field.budget.noise) : Json()},
                           {"compression", number(field.budget.compression)},
                           {"regression", number(field.budget.regression)}};

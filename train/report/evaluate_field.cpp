@@ -132,16 +132,27 @@ void measure_coverage(const FieldTask& task, const MatrixF& truth, FieldAccuracy
   }
 }
 
-// Members and weights, as the trainer left them in the bundle for people; empty for one member alone.
-std::string blend_text(const std::string& accuracy_json, const std::string& field) {
+// As the trainer left it in the bundle for people.
+Choice choice_of(const std::string& accuracy_json, const std::string& field) {
+  const auto number = [](const nlohmann::json& node, const char* key) {
+    return node.contains(key) && node[key].is_number() ? node[key].get<double>() : std::nan("");
+  };
   const auto root = nlohmann::json::parse(accuracy_json, nullptr, false);
-  if (!root.is_object() || !root.contains(field) || !root[field].contains("candidates")) return "";
+  if (!root.is_object() || !root.contains(field) || !root[field].contains("candidates"))
+    return {{}, std::nan(""), std::nan("")};
+  Choice choice{{}, number(root[field], "nrmse"), number(root[field], "nrmse_by_band")};
+  for (const auto& candidate : root[field]["candidates"])
+    choice.candidates.push_back(
+        {candidate.value("name", ""), number(candidate, "nrmse"), candidate.value("weight", 0.0)});
+  return choice;
+}
+
+// Members and weights; empty for one member alone.
+std::string blend_text(const Choice& choice) {
   std::vector<std::string> members;
-  for (const auto& candidate : root[field]["candidates"]) {
-    const double weight = candidate.value("weight", 0.0);
-    if (weight > 0)
-      members.push_back(fmt::format("{} {:.2f}", method_label(candidate.value("name", "")), weight));
-  }
+  for (const auto& candidate : choice.candidates)
+    if (candidate.weight > 0)
+      members.push_back(fmt::format("{} {:.2f}", method_label(candidate.name), candidate.weight));
   return members.size() > 1 ? base::join(members, ", ") : "";
 }
 
@@ -195,8 +206,9 @@ FieldAccuracy evaluate_field(const FieldTask& task, Figures* figures) {
     if (!result.methods.back().available) continue;
     const auto model = model::BundleReader(bundle.path).model(task.info.name);
     result.methods.back().kind = model->kind();
-    result.methods.back().detail =
-        blend_text(model::BundleReader(bundle.path).info().accuracy_json, task.info.name);
+    const auto choice = choice_of(model::BundleReader(bundle.path).info().accuracy_json, task.info.name);
+    result.methods.back().detail = blend_text(choice);
+    if (result.methods.size() == 1) result.choice = choice;
     const auto* networks = dynamic_cast<const model::BandedNetworks*>(model.get());
     if (networks != nullptr && result.submodels.empty())
       result.submodels = score_submodels(*networks, truth, predictions.back(), statistics);

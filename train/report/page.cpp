@@ -13,12 +13,13 @@ namespace {
 
 using svg::escape;
 
-std::string navigation(const PageExtras& extras) {
+std::string navigation(const AccuracyReport& report, const PageExtras& extras) {
   std::string links =
       "<a href=\"#table\">Scores</a><a href=\"#cuts\">Cuts</a><a href=\"#profiles\">Profiles</a><a "
       "href=\"#loads\">Loads</a>"
       "<a href=\"#budget\">Error budget</a><a href=\"#coverage\">Coverage</a><a href=\"#errors\">Errors</a>"
       "<a href=\"#validity\">Validity</a>";
+  if (!choice_section(report).empty()) links += "<a href=\"#choice\">Choice</a>";
   if (extras.learning_curve) links += "<a href=\"#learning\">More cases</a>";
   if (extras.cost) links += "<a href=\"#cost\">Cost</a>";
   if (!extras.searches.empty()) links += "<a href=\"#search\">Search</a>";
@@ -62,13 +63,13 @@ std::string html_page(const AccuracyReport& report, const PageExtras& extras) {
       "initial-scale=1\"><meta name=\"generator\" content=\"{}\"><title>ELROM accuracy: {}</title><style>",
       escape(program_version()), escape(report.study.name));
   page += page_style();
-  page += "</style></head><body>" + navigation(extras) + "<main>" + opening(report);
+  page += "</style></head><body>" + navigation(report, extras) + "<main>" + opening(report);
   page += section("table", "Scores by field",
                   "Every method on the same split and the same cells. The dot marks the best in each row.",
                   score_tables(report));
   page += cut_section(report) + profile_section(report) + load_section(report) + budget_section(report);
-  page +=
-      coverage_section(report) + error_section(report) + submodel_table(report) + validity_section(report);
+  page += coverage_section(report) + error_section(report) + submodel_table(report) +
+          validity_section(report) + choice_section(report);
   if (extras.learning_curve) page += learning_section(*extras.learning_curve);
   if (extras.cost) page += cost_section(*extras.cost);
   if (!extras.searches.empty()) page += search_section(extras.searches);

@@ -17,6 +17,8 @@ namespace elrom::report {
 
 [[nodiscard]] std::string key_figures(const AccuracyReport& report);
 [[nodiscard]] std::string score_tables(const AccuracyReport& report);
+/// What cross-validation on the training cases found; empty when no field chose among candidates.
+[[nodiscard]] std::string choice_section(const AccuracyReport& report);
 [[nodiscard]] std::string worst_cell_table(const AccuracyReport& report);
 [[nodiscard]] std::string submodel_table(const AccuracyReport& report);
 [[nodiscard]] std::string validity_table(const AccuracyReport& report);

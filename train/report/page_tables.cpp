@@ -161,6 +161,34 @@ std::string score_tables(const AccuracyReport& report) {
   return "<div class=\"switch\">" + buttons + "</div>" + tables;
 }
 
+std::string choice_section(const AccuracyReport& report) {
+  const auto chose = [](const FieldAccuracy& field) { return field.choice.candidates.size() > 1; };
+  const auto first = std::ranges::find_if(report.fields, chose);
+  if (first == report.fields.end()) return "";
+  std::string head = "<th>field</th>", body;
+  for (const auto& candidate : first->choice.candidates)
+    head += fmt::format("<th>{}</th>", escape(method_label(candidate.name)));
+  head += "<th>chosen</th><th>band by band</th>";
+  for (const auto& field : report.fields) {
+    if (!chose(field)) continue;
+    std::string cells;
+    for (const auto& candidate : field.choice.candidates)
+      cells += fmt::format("<td class=\"mark{}\">{}</td>", candidate.weight > 0 ? " best" : "",
+                           score_text(candidate.nrmse));
+    body += fmt::format("<tr><th>{}</th>{}<td class=\"mark own\">{}</td><td>{}</td></tr>",
+                        escape(field_label(field.info.name)), cells, score_text(field.choice.nrmse),
+                        score_text(field.choice.nrmse_by_band));
+  }
+  return section(
+      "choice", "What the choice went by",
+      "NRMSE on training cases that the fit left out, in groups of neighbouring loads; held-out "
+      "cases were not looked at. The dot marks what answers. A blend is taken where it is 1 % better "
+      "than its best member, and weights of each band of columns' own (last column) where they are "
+      "1 % better still.",
+      "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
+          "</tbody></table></div>");
+}
+
 std::string worst_cell_table(const AccuracyReport& report) {
   std::string body;
   for (const auto& field : report.fields) {

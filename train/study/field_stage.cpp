@@ -25,7 +25,7 @@ AutoFit fit_alone(const FieldStageRequest& request, const std::vector<std::size_
   const auto& data = request.data;
   const auto& method = *request.candidates.front();
   AutoFit fit;
-  fit.nrmse = NAN;
+  fit.nrmse = fit.nrmse_by_band = NAN;
   if (request.n_folds > 0) {
     const auto folds = load_grouped_folds(data.cases->loads, rows, request.n_folds);
     fit.nrmse = cross_validated_nrmse(data, rows, data.values - method.cross_predict(data, folds, context));
@@ -43,9 +43,18 @@ MatrixF residuals_of_new_cases(const FieldStageRequest& request, const AutoFit& 
   const auto& data = request.data;
   const auto folds = spread_folds(*data.cases, rows, 2 * request.n_folds);
   MatrixF residuals = data.values;
+  const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);
   for (std::size_t i = 0; i < request.candidates.size(); ++i) {
-    const auto weight = static_cast<float>(fit.candidates[i].weight);
-    if (weight > 0) residuals -= weight * request.candidates[i]->cross_predict(data, folds, context);
+    const auto& candidate = fit.candidates[i];
+    if (!(candidate.weight > 0)) continue;
+    Eigen::RowVectorXf weights =
+        Eigen::RowVectorXf::Constant(n_columns, static_cast<float>(candidate.weight));
+    if (!candidate.column_weights.empty())
+      weights = Eigen::RowVectorXd::Map(candidate.column_weights.data(), n_columns).cast<float>();
+    const MatrixF predictions = request.candidates[i]->cross_predict(data, folds, context);
+    for (Eigen::Index first = 0; first < residuals.cols(); first += n_columns)
+      residuals.middleCols(first, n_columns).array() -=
+          predictions.middleCols(first, n_columns).array().rowwise() * weights.array();
   }
   if (!residuals.allFinite())
     throw NumericalError("a model of other folds predicts numbers that are not finite");
@@ -62,6 +71,7 @@ Json accuracy_of(const std::string& name, const AutoFit& fit) {
   return {{"method", name},
           {"kind", fit.model->kind()},
           {"nrmse", finite_or_null(fit.nrmse)},
+          {"nrmse_by_band", finite_or_null(fit.nrmse_by_band)},
           {"candidates", candidates}};
 }
 
@@ -70,7 +80,8 @@ io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& co
   const auto& data = request.data;
   const auto rows = math::all_rows(data.cases->n_cases());
   const auto fit = request.name == "auto"
-                       ? fit_auto(data, rows, request.candidates, {.n_folds = request.n_folds}, context)
+                       ? fit_auto(data, rows, request.candidates,
+                                  {.n_folds = request.n_folds, .band_edges = request.band_edges}, context)
                        : fit_alone(request, rows, context);
   io::TensorFile file;
   if (request.n_folds > 0) {
@@ -94,7 +105,9 @@ io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& co
 std::string digest_of(const FieldStageRequest& request, const FitContext& context) {
   base::Sha256 digest;
   digest.add(data_digest(request.data, math::all_rows(request.data.cases->n_cases())));
-  digest.add(request.name).add(request.settings_digest).add("intervals on twice as many spread folds");
+  digest.add(request.name)
+      .add(request.settings_digest)
+      .add("intervals on twice as many spread folds, weights by band");
   for (const auto* method : request.candidates) digest.add(method->name());
   digest.add_value(context.seed.value()).add_value(request.n_folds);
   for (const auto& mirror : request.data.cases->mirrors) digest.add(mirror.name);

@@ -19,7 +19,7 @@ struct FieldStage {
   /// What it took when it was fitted, cache hits of later runs notwithstanding; not part of a bundle, whose
   /// bytes repeat.
   [[nodiscard]] double seconds() const;
-  /// {"method", "nrmse", "candidates": [{"name", "nrmse", "weight"}]}, for the bundle.
+  /// {"method", "nrmse", "nrmse_by_band", "candidates": [{"name", "nrmse", "weight"}]}, for the bundle.
   [[nodiscard]] const std::string& accuracy() const { return file.text("accuracy"); }
 };
 
@@ -27,8 +27,9 @@ struct FieldStageRequest {
   std::string name;                       ///< "auto", "pod_gp" ...
   std::vector<const Method*> candidates;  ///< one, or for "auto" those it chooses among
   const FieldData& data;
-  std::size_t n_folds = 0;      ///< cross-validation for error and intervals; 0: none
-  std::string settings_digest;  ///< of every setting that the result depends on
+  std::vector<double> band_edges;  ///< for "auto": see AutoOptions
+  std::size_t n_folds = 0;         ///< cross-validation for error and intervals; 0: none
+  std::string settings_digest;     ///< of every setting that the result depends on
 };
 
 /// From the cache, or fitted now on all cases of the data.

@@ -149,6 +149,7 @@ struct Study::Impl {
         .name = name,
         .candidates = name == "auto" ? methods.candidates() : std::vector{&methods.get(name)},
         .data = data,
+        .band_edges = settings.bands.edges,
         .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0,
         .settings_digest = methods.settings_text(name)};
     auto stage = fit_field(request, cache, context());

@@ -10,27 +10,27 @@
 
 namespace elrom::model {
 
-/// sum of weight_i * model_i; the spreads add up with the same weights (their errors are taken as fully
-/// correlated). Thread rule: const use from any number of threads, each with a Workspace of its own.
+/// sum of weight_i * model_i, with weights that may differ from column to column; the spreads add up with the
+/// same weights (their errors are taken as fully correlated). Thread rule: const use from any number of
+/// threads, each with a Workspace of its own.
 class BlendModel final : public FieldModel {
  public:
   struct Part {
-    double weight = 0;
+    std::vector<double> weights;  ///< (n_columns), or one for all columns
     std::shared_ptr<const FieldModel> model;
   };
-  /// @throws InputError without parts, or when their inputs, planes or columns differ
+  /// @throws InputError without parts, or when their inputs, planes, columns or numbers of weights do not fit
   explicit BlendModel(std::vector<Part> parts, const std::string& where = "memory");
 
   [[nodiscard]] std::string kind() const override { return "blend"; }
   [[nodiscard]] std::size_t n_inputs() const override { return parts_.front().model->n_inputs(); }
   [[nodiscard]] std::size_t n_planes() const override { return parts_.front().model->n_planes(); }
   [[nodiscard]] std::size_t n_columns() const override { return parts_.front().model->n_columns(); }
-  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   void predict(const Query& query, std::span<float> values, std::span<float> spread,
                Workspace& workspace) const override;
   void save(io::TensorFile& file, const std::string& prefix) const override;
-  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix, const Wanted& wanted);
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
+                                                        const Wanted& wanted);
 
  private:
   std::vector<Part> parts_;
@@ -52,8 +52,8 @@ class MirrorModel final : public FieldModel {
   void predict(const Query& query, std::span<float> values, std::span<float> spread,
                Workspace& workspace) const override;
   void save(io::TensorFile& file, const std::string& prefix) const override;
-  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix, const Wanted& wanted);
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
+                                                        const Wanted& wanted);
 
  private:
   struct Image {

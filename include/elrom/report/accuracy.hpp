@@ -65,8 +65,21 @@ struct SubmodelScore {
   ErrorSums sums;
 };
 
+/// What method `auto` went by: errors on training cases that a fit left out, fold by fold (NRMSE).
+struct Choice {
+  struct Candidate {
+    std::string name;
+    double nrmse = 0;   ///< NaN: it failed
+    double weight = 0;  ///< in the model
+  };
+  std::vector<Candidate> candidates;  ///< empty: not known
+  double nrmse = 0;                   ///< of what was chosen; NaN: not known
+  double nrmse_by_band = 0;           ///< had each band of columns weights of its own; NaN: not known
+};
+
 struct FieldAccuracy {
   field::FieldInfo info;
+  Choice choice;                         ///< of the study's model
   std::vector<MethodField> methods;      //!< in the order of AccuracyReport::methods
   std::vector<SubmodelScore> submodels;  //!< of the study's own networks, wherever they are; empty: none
   std::vector<double> noise;  ///< energy of the truth's noise in each scored case; empty: not known

@@ -1,6 +1,7 @@
 #pragma once
-// Method "auto": per field, the blend of candidates that predicts cases best that it has not seen, found by
-// load-grouped cross-validation on training cases only.
+// Method "auto": per field, and per band of columns where that pays, the candidate or the blend of candidates
+// that predicts cases best that it has not seen, found by load-grouped cross-validation on training cases
+// only.
 
 #include <memory>
 #include <span>
@@ -15,21 +16,25 @@ struct AutoOptions {
   std::size_t n_folds = 8;
   /// A blend whose weights are learned without a fold must be better in it than the best member by this share
   /// of the member's error, or that member alone is taken: each further member costs time at every
-  /// prediction.
+  /// prediction. Weights for each band must be better by the same share than those for the whole field.
   double least_gain = 0.01;
+  /// Limits between bands of columns: mean squared error of the best candidate over the column's variance.
+  std::vector<double> band_edges{0.1, 0.2, 0.3, 0.5};
 };
 
 struct CandidateScore {
   std::string name;
   double nrmse = 0;   ///< cross-validated, against the mean of the cases; NaN: failed
-  double weight = 0;  ///< in the final model
+  double weight = 0;  ///< in the final model; its mean over the columns where they differ
   std::string failure = {};
+  std::vector<double> column_weights = {};  ///< (n_columns); empty: `weight` in all of them
 };
 
 struct AutoFit {
-  std::unique_ptr<model::FieldModel> model;  ///< fitted on all the cases
-  std::vector<CandidateScore> candidates;    ///< in the order given
+  std::shared_ptr<const model::FieldModel> model;  ///< fitted on all the cases
+  std::vector<CandidateScore> candidates;          ///< in the order given
   double nrmse = 0;  ///< cross-validated, of the final model: a blend's weights are those of the other folds
+  double nrmse_by_band = 0;  ///< the same, had each band weights of its own; NaN: all columns in one band
 };
 
 /// A candidate that throws NumericalError loses and is told to the log; when all do, the first error is
