@@ -184,7 +184,7 @@ std::string choice_section(const AccuracyReport& report) {
       "NRMSE on training cases that the fit left out, in groups of neighbouring loads; held-out "
       "cases were not looked at. The dot marks what answers. A blend is taken where it is 1 % better "
       "than its best member, and weights of each band of columns' own (last column) where they are "
-      "1 % better still.",
+      "1 % better still (-: all columns lie in one band).",
       "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
           "</tbody></table></div>");
 }
