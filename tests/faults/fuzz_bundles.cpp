@@ -97,6 +97,8 @@ std::map<std::string, Model> models_of(study::CaseSet& cases, const study::Field
       models["linear"], field::symmetry_group(cases.mirrors, 3, 4), data.info.parity, 2);
   models["blend"] = std::make_shared<model::BlendModel>(
       std::vector<model::BlendModel::Part>{{{0.5}, models["nearest"]}, {{0.5}, models["pod_mlp"]}});
+  models["blend_by_column"] = std::make_shared<model::BlendModel>(
+      std::vector<model::BlendModel::Part>{{{0.2, 0.8}, models["linear"]}, {{0.8, 0.2}, models["nearest"]}});
   return models;
 }
 
