@@ -95,7 +95,7 @@ nlohmann::json measure(const Shape& shape, Sgemm sgemm, double budget_s) {
   problem.train_targets = MatrixF::Random(n_records, shape.n_outputs);
   const study::Hyperparameters hyperparameters{
       .learning_rate = 1e-4, .n_layers = shape.n_layers, .n_units = shape.n_units, .batch_size = shape.batch};
-  elrom::torch::Training training(problem, hyperparameters, base::Seed(1), ::torch::kCPU);
+  elrom::torch::Training training(problem, hyperparameters, base::Seed(1), {});
   std::vector<std::int64_t> order(static_cast<std::size_t>(n_records));
   std::iota(order.begin(), order.end(), 0);
   base::Random(base::Seed(2)).shuffle(order);

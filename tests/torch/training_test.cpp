@@ -52,6 +52,7 @@ Tensor autograd_loss(const Tensor& flat, const std::vector<std::int64_t>& widths
 struct Case {
   model::Activation activation;
   bool weighted;
+  bool own_loops = true;
 };
 class Step : public ::testing::TestWithParam<Case> {};
 
@@ -63,7 +64,7 @@ TEST_P(Step, EqualsAutogradAndLibTorchsAdamW) {
                                                .batch_size = 40,
                                                .weight_decay = 0.1,
                                                .activation = GetParam().activation};
-  Training training(problem, hyperparameters, base::Seed(9), ::torch::kCPU);
+  Training training(problem, hyperparameters, base::Seed(9), {.own_loops = GetParam().own_loops});
   Tensor parameters = training.mlp().parameters().clone().set_requires_grad(true);
   ::torch::optim::AdamW adam({parameters}, ::torch::optim::AdamWOptions(1e-2).weight_decay(0.1));
   std::vector<std::int64_t> rows(40);
@@ -87,7 +88,30 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Step,
                          ::testing::Values(Case{model::Activation::relu, false},
                                            Case{model::Activation::relu, true},
                                            Case{model::Activation::tanh, false},
-                                           Case{model::Activation::silu, true}));
+                                           Case{model::Activation::silu, true},
+                                           Case{model::Activation::relu, false, false},
+                                           Case{model::Activation::silu, true, false}));
+
+// What a GPU runs, on the CPU: the same training to rounding, whatever it draws, weighs and stops by.
+TEST(Training, LibTorchsOperatorsDoWhatOurLoopsDo) {
+  const auto problem = make_problem(true);
+  const study::Hyperparameters hyperparameters{
+      .n_units = 9, .batch_size = 16, .weight_decay = 0.1, .dropout = 0.2};
+  Training loops(problem, hyperparameters, base::Seed(9), {});
+  Training operators(problem, hyperparameters, base::Seed(9), {.own_loops = false});
+
+  for (int epoch = 0; epoch < 5; ++epoch) {
+    ASSERT_TRUE(loops.run_epoch());
+    ASSERT_TRUE(operators.run_epoch());
+  }
+
+  const auto& expected = loops.progress().history;
+  ASSERT_EQ(operators.progress().history.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_NEAR(operators.progress().history[i], expected[i], 1e-5 * expected[i]);
+  const Tensor difference = operators.best() - loops.best();
+  EXPECT_LT(difference.norm().item<double>(), 1e-5 * loops.best().norm().item<double>());
+}
 
 TEST(Training, DropoutKeepsTheExpectedValue) {
   Mlp mlp({4, 1000, 2}, model::Activation::relu, ::torch::kCPU);
@@ -102,7 +126,7 @@ TEST(Training, DropoutKeepsTheExpectedValue) {
 
 TEST(Training, EvaluationIsTheMeanOverTargetsThatCount) {
   const auto problem = make_problem(true);
-  Training training(problem, {.n_layers = 0}, base::Seed(9), ::torch::kCPU);
+  Training training(problem, {.n_layers = 0}, base::Seed(9), {});
 
   const double mse = training.evaluate();
 

@@ -16,8 +16,8 @@ struct Factors {
   float square_scale;  ///< 1 / bias correction of the squares
 };
 
-void step_on_cpu(float* parameters, const float* gradient, float* mean, float* square, std::int64_t n,
-                 const Factors& f) {
+void step_by_loops(float* parameters, const float* gradient, float* mean, float* square, std::int64_t n,
+                   const Factors& f) {
   using Array = Eigen::Map<Eigen::ArrayXf>;
   constexpr std::int64_t chunk = 512;  // the five arrays' chunks stay in the first-level cache
   for (std::int64_t i = 0; i < n; i += chunk) {
@@ -30,8 +30,8 @@ void step_on_cpu(float* parameters, const float* gradient, float* mean, float* s
   }
 }
 
-void step_on_device(::torch::Tensor& parameters, const ::torch::Tensor& gradient, ::torch::Tensor& mean,
-                    ::torch::Tensor& square, const Factors& f) {
+void step_by_operators(::torch::Tensor& parameters, const ::torch::Tensor& gradient, ::torch::Tensor& mean,
+                       ::torch::Tensor& square, const Factors& f) {
   mean.mul_(beta_mean).add_(gradient, 1 - beta_mean);
   square.mul_(beta_square).addcmul_(gradient, gradient, 1 - beta_square);
   parameters.mul_(f.decay).addcdiv_(mean, (square * f.square_scale).sqrt_().add_(epsilon), -f.rate);
@@ -46,11 +46,11 @@ void Adam::step(::torch::Tensor& parameters, const ::torch::Tensor& gradient, do
   const Factors factors{static_cast<float>(1 - learning_rate * weight_decay),
                         static_cast<float>(learning_rate / (1 - std::pow(double{beta_mean}, steps))),
                         static_cast<float>(1 / (1 - std::pow(double{beta_square}, steps)))};
-  if (parameters.is_cpu())
-    step_on_cpu(parameters.data_ptr<float>(), gradient.data_ptr<float>(), mean_.data_ptr<float>(),
-                square_.data_ptr<float>(), parameters.numel(), factors);
+  if (own_loops_)
+    step_by_loops(parameters.data_ptr<float>(), gradient.data_ptr<float>(), mean_.data_ptr<float>(),
+                  square_.data_ptr<float>(), parameters.numel(), factors);
   else
-    step_on_device(parameters, gradient, mean_, square_, factors);
+    step_by_operators(parameters, gradient, mean_, square_, factors);
 }
 
 void Adam::reset() {

@@ -1,6 +1,6 @@
 #pragma once
 // Adam with decoupled weight decay on one flat parameter tensor (Kingma & Ba 2015, algorithm 1; Loshchilov &
-// Hutter 2019, algorithm 2): beta 0.9 and 0.999, epsilon 1e-8. On the CPU in one sweep over memory.
+// Hutter 2019, algorithm 2): beta 0.9 and 0.999, epsilon 1e-8. Loops of our own take one sweep over memory.
 
 #include <torch/torch.h>
 
@@ -10,8 +10,11 @@ namespace elrom::torch {
 
 class Adam {
  public:
-  explicit Adam(const ::torch::Tensor& parameters)
-      : mean_(::torch::zeros_like(parameters)), square_(::torch::zeros_like(parameters)) {}
+  /// @param own_loops see Place
+  Adam(const ::torch::Tensor& parameters, bool own_loops)
+      : mean_(::torch::zeros_like(parameters)),
+        square_(::torch::zeros_like(parameters)),
+        own_loops_(own_loops) {}
 
   void step(::torch::Tensor& parameters, const ::torch::Tensor& gradient, double learning_rate,
             double weight_decay);
@@ -24,6 +27,7 @@ class Adam {
 
  private:
   ::torch::Tensor mean_, square_;
+  bool own_loops_;
   std::int64_t n_steps_ = 0;
 };
 

@@ -14,6 +14,13 @@
 
 namespace elrom::torch {
 
+/// Where tensors lie, and who works on them beside the products: loops of our own, faster on a CPU, or
+/// LibTorch's operators, which a GPU needs (on the CPU they are there to be tested).
+struct Place {
+  ::torch::Device device = ::torch::kCPU;
+  bool own_loops = device.is_cpu();
+};
+
 /// The buffers of one pass of a fixed number of rows.
 struct Pass {
   std::int64_t n_rows = 0;

@@ -15,8 +15,8 @@ Tensor view_of(const MatrixF& matrix, ::torch::Device device) {
   return view.to(device);
 }
 
-void gather_rows(const Tensor& from, std::span<const std::int64_t> rows, Tensor& to) {
-  if (from.is_cpu()) {
+void gather_rows(const Tensor& from, std::span<const std::int64_t> rows, bool own_loops, Tensor& to) {
+  if (own_loops) {
     const auto width = static_cast<std::size_t>(from.size(1));
     const float* source = from.data_ptr<float>();
     float* target = to.data_ptr<float>();
@@ -34,13 +34,12 @@ void gather_rows(const Tensor& from, std::span<const std::int64_t> rows, Tensor&
 
 }  // namespace
 
-Records::Records(const MatrixF& inputs, const MatrixF& targets, const MatrixF& weights,
-                 ::torch::Device device)
-    : inputs_(view_of(inputs, device)), targets_(view_of(targets, device)) {
+Records::Records(const MatrixF& inputs, const MatrixF& targets, const MatrixF& weights, Place place)
+    : place_(place), inputs_(view_of(inputs, place.device)), targets_(view_of(targets, place.device)) {
   check(inputs.rows() == targets.rows(), "as many inputs as targets");
   if (weights.size() == 0) return;
   check(weights.rows() == targets.rows() && weights.cols() == targets.cols(), "a weight for every target");
-  weights_ = view_of(weights, device);
+  weights_ = view_of(weights, place.device);
   counts_.resize(static_cast<std::size_t>(weights.rows()));
   Eigen::Map<Eigen::VectorXf>(counts_.data(), weights.rows()) = weights.rowwise().sum();
 }
@@ -60,9 +59,9 @@ double Records::n_targets(std::span<const std::int64_t> rows) const {
 
 void Records::gather(std::span<const std::int64_t> rows, Pass& pass) const {
   check(static_cast<std::int64_t>(rows.size()) == pass.n_rows, "a pass of as many rows");
-  gather_rows(inputs_, rows, pass.x);
-  gather_rows(targets_, rows, pass.target);
-  if (weights_.defined()) gather_rows(weights_, rows, pass.weight);
+  gather_rows(inputs_, rows, place_.own_loops, pass.x);
+  gather_rows(targets_, rows, place_.own_loops, pass.target);
+  if (weights_.defined()) gather_rows(weights_, rows, place_.own_loops, pass.weight);
 }
 
 }  // namespace elrom::torch

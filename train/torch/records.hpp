@@ -15,7 +15,7 @@ namespace elrom::torch {
 /// On the CPU a view of the caller's matrices, which must outlive it; elsewhere a copy on the device.
 class Records {
  public:
-  Records(const MatrixF& inputs, const MatrixF& targets, const MatrixF& weights, ::torch::Device device);
+  Records(const MatrixF& inputs, const MatrixF& targets, const MatrixF& weights, Place place);
 
   [[nodiscard]] std::int64_t size() const { return inputs_.size(0); }
   [[nodiscard]] bool weighted() const { return weights_.defined(); }
@@ -27,6 +27,7 @@ class Records {
   void gather(std::span<const std::int64_t> rows, Pass& pass) const;
 
  private:
+  Place place_;
   ::torch::Tensor inputs_, targets_, weights_;
   std::vector<float> counts_;  //!< targets that count, of every record; empty when all count
 };

@@ -38,7 +38,7 @@ class Run {
   Run(const study::TrainingProblem& problem, const study::Hyperparameters& hyperparameters,
       const study::TrainingBudget& budget, base::Seed seed, ::torch::Device device,
       std::filesystem::path checkpoint)
-      : training_(problem, hyperparameters, seed, device),
+      : training_(problem, hyperparameters, seed, {device}),
         budget_(budget),
         checkpoint_(std::move(checkpoint)) {
     if (!checkpoint_.empty()) digest_ = training_digest(problem, hyperparameters, budget, seed);

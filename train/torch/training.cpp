@@ -36,15 +36,17 @@ OneFastThread::OneFastThread() {
 OneFastThread::~OneFastThread() { at::globalContext().setFlushDenormal(false); }
 
 Training::Training(const study::TrainingProblem& problem, const study::Hyperparameters& hyperparameters,
-                   base::Seed seed, ::torch::Device device)
+                   base::Seed seed, Place place)
     : hyperparameters_(hyperparameters),
       seed_(seed),
-      train_(problem.train_inputs, problem.train_targets, problem.train_weights, device),
-      validation_(problem.validation_inputs, problem.validation_targets, problem.validation_weights, device),
-      mlp_(widths_of(problem, hyperparameters), hyperparameters.activation, device),
-      adam_(mlp_.parameters()),
+      own_loops_(place.own_loops),
+      train_(problem.train_inputs, problem.train_targets, problem.train_weights, place),
+      validation_(problem.validation_inputs, problem.validation_targets, problem.validation_weights, place),
+      mlp_(widths_of(problem, hyperparameters), hyperparameters.activation, place.device),
+      adam_(mlp_.parameters(), place.own_loops),
       best_(::torch::zeros_like(mlp_.parameters())),
-      sum_of_squares_(::torch::zeros({1}, ::torch::TensorOptions().dtype(::torch::kFloat64).device(device))),
+      sum_of_squares_(
+          ::torch::zeros({1}, ::torch::TensorOptions().dtype(::torch::kFloat64).device(place.device))),
       order_(static_cast<std::size_t>(train_.size())),
       dropout_random_(seed) {
   check(train_.size() > 0, "records to train with");
@@ -70,7 +72,7 @@ Pass& Training::pass_of(std::int64_t n_rows) {
 }
 
 void Training::residual(Pass& pass, double scale) {
-  if (!pass.y.is_cpu()) {
+  if (!own_loops_) {
     at::sub_out(pass.error, pass.y, pass.target);
     if (pass.weight.defined()) pass.error.mul_(pass.weight);
     sum_of_squares_.add_(pass.error.square().sum(::torch::kFloat64));

@@ -25,7 +25,7 @@ struct Progress {
 class Training {
  public:
   Training(const study::TrainingProblem& problem, const study::Hyperparameters& hyperparameters,
-           base::Seed seed, ::torch::Device device);
+           base::Seed seed, Place place);
 
   /// One sweep over the training records in the epoch's own random order, then an evaluation; keeps the best
   /// weights.
@@ -49,6 +49,7 @@ class Training {
 
   study::Hyperparameters hyperparameters_;
   base::Seed seed_;
+  bool own_loops_;
   Records train_, validation_;
   Mlp mlp_;
   Adam adam_;
