@@ -52,7 +52,7 @@ void BlendModel::predict(const Query& query, std::span<float> values, std::span<
                            weights = workspace.floats(n_columns());
     part.model->predict(query, own, own_spread, workspace);
     for (std::size_t c = 0; c < weights.size(); ++c)
-      weights[c] = static_cast<float>(part.weights.size() == 1 ? part.weights.front() : part.weights[c]);
+      weights[c] = static_cast<float>(part.weights[c % part.weights.size()]);
     for (std::size_t first = 0; first < values.size(); first += n_columns())
       for (std::size_t c = 0; c < weights.size(); ++c) values[first + c] += weights[c] * own[first + c];
     for (std::size_t first = 0; first < spread.size(); first += n_columns())
@@ -66,9 +66,9 @@ void BlendModel::save(io::TensorFile& file, const std::string& prefix) const {
   const bool by_column = std::ranges::any_of(parts_, [](const Part& p) { return p.weights.size() > 1; });
   std::vector<double> weights;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const auto& own = parts_[i].weights;
-    weights.insert(weights.end(), by_column && own.size() == 1 ? n_columns() : 1, own.front());
-    if (own.size() > 1) weights.insert(weights.end(), own.begin() + 1, own.end());
+    auto own = parts_[i].weights;
+    if (by_column && own.size() == 1) own.assign(n_columns(), own.front());
+    weights.insert(weights.end(), own.begin(), own.end());
     parts_[i].model->save(file, prefix + "/part" + std::to_string(i));
   }
   std::vector<std::size_t> shape{parts_.size()};

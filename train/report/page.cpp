@@ -13,13 +13,13 @@ namespace {
 
 using svg::escape;
 
-std::string navigation(const AccuracyReport& report, const PageExtras& extras) {
+std::string navigation(bool with_choice, const PageExtras& extras) {
   std::string links =
       "<a href=\"#table\">Scores</a><a href=\"#cuts\">Cuts</a><a href=\"#profiles\">Profiles</a><a "
       "href=\"#loads\">Loads</a>"
       "<a href=\"#budget\">Error budget</a><a href=\"#coverage\">Coverage</a><a href=\"#errors\">Errors</a>"
       "<a href=\"#validity\">Validity</a>";
-  if (!choice_section(report).empty()) links += "<a href=\"#choice\">Choice</a>";
+  if (with_choice) links += "<a href=\"#choice\">Choice</a>";
   if (extras.learning_curve) links += "<a href=\"#learning\">More cases</a>";
   if (extras.cost) links += "<a href=\"#cost\">Cost</a>";
   if (!extras.searches.empty()) links += "<a href=\"#search\">Search</a>";
@@ -57,19 +57,20 @@ std::string section(std::string_view id, std::string_view title, std::string_vie
 
 std::string html_page(const AccuracyReport& report, const PageExtras& extras) {
   check(report.figures.has_value(), "html_page: the report was made without figures");
+  const auto choice = choice_section(report);
   std::string page = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, "
       "initial-scale=1\"><meta name=\"generator\" content=\"{}\"><title>ELROM accuracy: {}</title><style>",
       escape(program_version()), escape(report.study.name));
   page += page_style();
-  page += "</style></head><body>" + navigation(report, extras) + "<main>" + opening(report);
+  page += "</style></head><body>" + navigation(!choice.empty(), extras) + "<main>" + opening(report);
   page += section("table", "Scores by field",
                   "Every method on the same split and the same cells. The dot marks the best in each row.",
                   score_tables(report));
   page += cut_section(report) + profile_section(report) + load_section(report) + budget_section(report);
   page += coverage_section(report) + error_section(report) + submodel_table(report) +
-          validity_section(report) + choice_section(report);
+          validity_section(report) + choice;
   if (extras.learning_curve) page += learning_section(*extras.learning_curve);
   if (extras.cost) page += cost_section(*extras.cost);
   if (!extras.searches.empty()) page += search_section(extras.searches);

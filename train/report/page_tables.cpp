@@ -7,6 +7,7 @@
 
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
+#include "elrom/study/auto_method.hpp"
 #include "names.hpp"
 #include "page_parts.hpp"
 #include "svg.hpp"
@@ -179,14 +180,18 @@ std::string choice_section(const AccuracyReport& report) {
                         escape(field_label(field.info.name)), cells, score_text(field.choice.nrmse),
                         score_text(field.choice.nrmse_by_band));
   }
-  return section(
-      "choice", "What the choice went by",
-      "NRMSE on training cases that the fit left out, in groups of neighbouring loads; held-out "
-      "cases were not looked at. The dot marks what answers. A blend is taken where it is 1 % better "
-      "than its best member, and weights of each band of columns' own (last column) where they are "
-      "1 % better still (-: all columns lie in one band).",
-      "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
-          "</tbody></table></div>");
+  const auto lead = fmt::format(
+      "NRMSE on training cases that the fit left out, in groups of neighbouring loads; held-out cases were "
+      "not "
+      "looked at. The dot marks what answers. A blend is taken where it is {0:g} % better than its best "
+      "member, "
+      "and weights of each band of columns' own (last column) where they are {0:g} % better still (-: all "
+      "columns "
+      "lie in one band).",
+      100 * study::AutoOptions{}.least_gain);
+  return section("choice", "What the choice went by", lead,
+                 "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
+                     "</tbody></table></div>");
 }
 
 std::string worst_cell_table(const AccuracyReport& report) {

@@ -125,8 +125,7 @@ class Contest {
                 .nrmse_by_band = by_band.cols() > 1 ? relative(banded) : NAN};
     for (Index i = 0; i < weights.rows(); ++i) {
       CandidateScore& score = fit.candidates[standing_[static_cast<std::size_t>(i)]];
-      score.weight = weights.row(i).mean();
-      if (weights.cols() > 1) score.column_weights.assign(weights.row(i).begin(), weights.row(i).end());
+      if (weights.row(i).maxCoeff() > 0) score.weights.assign(weights.row(i).begin(), weights.row(i).end());
     }
     return fit;
   }
@@ -224,6 +223,10 @@ class Contest {
 
 }  // namespace
 
+double CandidateScore::mean_weight() const {
+  return weights.empty() ? 0 : VectorXd::Map(weights.data(), static_cast<Index>(weights.size())).mean();
+}
+
 std::vector<double> blend_weights(const MatrixXd& error_gram) {
   std::vector<Index> members(static_cast<std::size_t>(error_gram.rows()));
   for (std::size_t i = 0; i < members.size(); ++i) members[i] = static_cast<Index>(i);
@@ -258,17 +261,14 @@ AutoFit fit_auto(const FieldData& data, std::span<const std::size_t> cases,
 
   std::vector<model::BlendModel::Part> parts;
   std::string told;
-  bool banded = false;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const CandidateScore& score = fit.candidates[i];
-    told += " " + score.name + " " + base::rounded(score.nrmse, 3) + (score.weight > 0 ? "*" : "");
-    banded = banded || !score.column_weights.empty();
-    if (!(score.weight > 0)) continue;
-    parts.push_back({score.column_weights.empty() ? std::vector{score.weight} : score.column_weights,
-                     candidates[i]->fit(data, cases, context)});
+    told += " " + score.name + " " + base::rounded(score.nrmse, 3) + (score.weights.empty() ? "" : "*");
+    if (!score.weights.empty()) parts.push_back({score.weights, candidates[i]->fit(data, cases, context)});
   }
   if (std::isfinite(fit.nrmse_by_band))
-    told += ", band by band " + base::rounded(fit.nrmse_by_band, 3) + (banded ? "*" : "");
+    told += ", band by band " + base::rounded(fit.nrmse_by_band, 3) +
+            (parts.front().weights.size() > 1 ? "*" : "");
   context.log->detail("auto: " + data.info.name + ":" + told);
   if (parts.size() == 1)
     fit.model = std::move(parts.front().model);

@@ -30,14 +30,14 @@ AutoFit fit_alone(const FieldStageRequest& request, const std::vector<std::size_
     const auto folds = load_grouped_folds(data.cases->loads, rows, request.n_folds);
     fit.nrmse = cross_validated_nrmse(data, rows, data.values - method.cross_predict(data, folds, context));
   }
-  fit.candidates.push_back({.name = method.name(), .nrmse = fit.nrmse, .weight = 1});
+  fit.candidates.push_back({.name = method.name(), .nrmse = fit.nrmse, .weights = {1.0}});
   fit.model = method.fit(data, rows, context);
   return fit;
 }
 
 /// Truth minus prediction, each case by a model that never saw it but saw the loads around it, as intervals
 /// promise it: the folds that methods compete in leave gaps, which a new case need not meet. Twice as many of
-/// them, because a model without a sixth of its cases errs more than the one that will answer.
+/// them, because a model that misses as many cases as those do errs more than the one that will answer.
 MatrixF residuals_of_new_cases(const FieldStageRequest& request, const AutoFit& fit,
                                const std::vector<std::size_t>& rows, const FitContext& context) {
   const auto& data = request.data;
@@ -46,11 +46,11 @@ MatrixF residuals_of_new_cases(const FieldStageRequest& request, const AutoFit& 
   const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);
   for (std::size_t i = 0; i < request.candidates.size(); ++i) {
     const auto& candidate = fit.candidates[i];
-    if (!(candidate.weight > 0)) continue;
-    Eigen::RowVectorXf weights =
-        Eigen::RowVectorXf::Constant(n_columns, static_cast<float>(candidate.weight));
-    if (!candidate.column_weights.empty())
-      weights = Eigen::RowVectorXd::Map(candidate.column_weights.data(), n_columns).cast<float>();
+    if (candidate.weights.empty()) continue;
+    Eigen::RowVectorXf weights(n_columns);
+    for (Eigen::Index c = 0; c < n_columns; ++c)
+      weights[c] =
+          static_cast<float>(candidate.weights[static_cast<std::size_t>(c) % candidate.weights.size()]);
     const MatrixF predictions = request.candidates[i]->cross_predict(data, folds, context);
     for (Eigen::Index first = 0; first < residuals.cols(); first += n_columns)
       residuals.middleCols(first, n_columns).array() -=
@@ -64,8 +64,9 @@ MatrixF residuals_of_new_cases(const FieldStageRequest& request, const AutoFit& 
 Json accuracy_of(const std::string& name, const AutoFit& fit) {
   Json candidates = Json::array();
   for (const auto& candidate : fit.candidates) {
-    candidates.push_back(
-        {{"name", candidate.name}, {"nrmse", finite_or_null(candidate.nrmse)}, {"weight", candidate.weight}});
+    candidates.push_back({{"name", candidate.name},
+                          {"nrmse", finite_or_null(candidate.nrmse)},
+                          {"weight", candidate.mean_weight()}});
     if (!candidate.failure.empty()) candidates.back()["failure"] = candidate.failure;
   }
   return {{"method", name},

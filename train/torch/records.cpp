@@ -35,7 +35,9 @@ void gather_rows(const Tensor& from, std::span<const std::int64_t> rows, bool ow
 }  // namespace
 
 Records::Records(const MatrixF& inputs, const MatrixF& targets, const MatrixF& weights, Place place)
-    : place_(place), inputs_(view_of(inputs, place.device)), targets_(view_of(targets, place.device)) {
+    : own_loops_(place.own_loops),
+      inputs_(view_of(inputs, place.device)),
+      targets_(view_of(targets, place.device)) {
   check(inputs.rows() == targets.rows(), "as many inputs as targets");
   if (weights.size() == 0) return;
   check(weights.rows() == targets.rows() && weights.cols() == targets.cols(), "a weight for every target");
@@ -59,9 +61,9 @@ double Records::n_targets(std::span<const std::int64_t> rows) const {
 
 void Records::gather(std::span<const std::int64_t> rows, Pass& pass) const {
   check(static_cast<std::int64_t>(rows.size()) == pass.n_rows, "a pass of as many rows");
-  gather_rows(inputs_, rows, place_.own_loops, pass.x);
-  gather_rows(targets_, rows, place_.own_loops, pass.target);
-  if (weights_.defined()) gather_rows(weights_, rows, place_.own_loops, pass.weight);
+  gather_rows(inputs_, rows, own_loops_, pass.x);
+  gather_rows(targets_, rows, own_loops_, pass.target);
+  if (weights_.defined()) gather_rows(weights_, rows, own_loops_, pass.weight);
 }
 
 }  // namespace elrom::torch

@@ -27,7 +27,7 @@ class Records {
   void gather(std::span<const std::int64_t> rows, Pass& pass) const;
 
  private:
-  Place place_;
+  bool own_loops_;
   ::torch::Tensor inputs_, targets_, weights_;
   std::vector<float> counts_;  //!< targets that count, of every record; empty when all count
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elrom/study/method.hpp"
+#include "elrom/study/settings.hpp"
 
 namespace elrom::study {
 
@@ -19,15 +20,17 @@ struct AutoOptions {
   /// prediction. Weights for each band must be better by the same share than those for the whole field.
   double least_gain = 0.01;
   /// Limits between bands of columns: mean squared error of the best candidate over the column's variance.
-  std::vector<double> band_edges{0.1, 0.2, 0.3, 0.5};
+  std::vector<double> band_edges = BandSettings{}.edges;
 };
 
 struct CandidateScore {
   std::string name;
-  double nrmse = 0;   ///< cross-validated, against the mean of the cases; NaN: failed
-  double weight = 0;  ///< in the final model; its mean over the columns where they differ
+  double nrmse = 0;  ///< cross-validated, against the mean of the cases; NaN: failed
+  std::vector<double> weights =
+      {};  ///< in the final model: (n_columns), or one for all; empty: no part of it
   std::string failure = {};
-  std::vector<double> column_weights = {};  ///< (n_columns); empty: `weight` in all of them
+
+  [[nodiscard]] double mean_weight() const;
 };
 
 struct AutoFit {
