@@ -83,8 +83,8 @@ std::vector<double> CaseFeatures::evaluate(const CaseSummary& summary, const Cor
   for (const double value : measures) features.push_back(log_of(value));
   const double density = furnace_pressure / (gas_constant * input(temperature_));
   features.push_back(log_of(measure(Measure::gas_rise) * density * summary.area / flow));
-  // Without volumes the solids held are known up to the same factor in every case of a mesh: no absolute
-  // density.
+  // Without volumes the solids held are known up to the same
+  // factor in every case of a mesh: no absolute density.
   features.push_back(
       log_of(summary.has_volume ? input(inventory_) / measure(Measure::solids_volume) : unknown));
   features.push_back(log_of(measure(Measure::pressure_drop) * summary.area / (gravity * input(inventory_))));

@@ -14,8 +14,8 @@ namespace elrom::ingest {
 /// the HDF5 library
 [[nodiscard]] std::string kind_of(const std::filesystem::path& path);
 
-/// An HDF5 file of kind "elrom-snapshots". @throws InputError when it cannot be read, or crashes the HDF5
-/// library
+/// An HDF5 file of kind "elrom-snapshots". @throws InputError
+/// when it cannot be read, or crashes the HDF5 library
 [[nodiscard]] bool is_snapshot_store(const std::filesystem::path& path);
 
 }  // namespace elrom::ingest

@@ -1,6 +1,6 @@
 #pragma once
-// The names that other programs give to the columns of a solution table. The table is documented in
-// data/FORMATS.md.
+// The names that other programs give to the columns of a solution
+// table. The table is documented in data/FORMATS.md.
 
 #include <string>
 #include <string_view>

@@ -18,8 +18,8 @@ struct Options {
   std::string json;
 };
 
-/// Adds the targets one by one; what cannot be read becomes a finding, so that one bad file does not hide the
-/// others.
+/// Adds the targets one by one; what cannot be read becomes a
+/// finding, so that one bad file does not hide the others.
 void add_targets(const Options& options, Checker& checker) {
   for (const auto& target : options.targets) {
     try {

@@ -13,17 +13,17 @@
 
 namespace elrom::ingest {
 
-/// A file read whole, with a reading position. Every throw is an InputError naming file, line, found and
-/// expected.
+/// A file read whole, with a reading position. Every throw is
+/// an InputError naming file, line, found and expected.
 class FoamFile {
  public:
-  /// Opens `path` or `path`.gz. @throws InputError when neither is there, or its FoamFile header says `format
-  /// binary`
+  /// Opens `path` or `path`.gz. @throws InputError when neither is
+  /// there, or its FoamFile header says `format binary`
   explicit FoamFile(const std::filesystem::path& path);
   [[nodiscard]] static bool exists(const std::filesystem::path& path);
 
-  /// Moves behind the top-level keyword, searching from the file's beginning. @return false when it is not
-  /// there
+  /// Moves behind the top-level keyword, searching from the
+  /// file's beginning. @return false when it is not there
   [[nodiscard]] bool seek(std::string_view keyword);
   /// The same for an entry that must be there.
   void seek_required(std::string_view keyword);

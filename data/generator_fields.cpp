@@ -113,8 +113,8 @@ FieldGenerator::State FieldGenerator::state_of(const DesignPoint& point) const {
   return state;
 }
 
-// Plane means over the height: gas rise, volume fraction scaled to the inventory, and the pressure that
-// follows.
+// Plane means over the height: gas rise, volume fraction
+// scaled to the inventory, and the pressure that follows.
 void FieldGenerator::fill_profiles(State& state) const {
   const auto n = height_.size();
   const double dz = furnace_height / static_cast<double>(n);

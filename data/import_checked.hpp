@@ -6,8 +6,8 @@
 
 namespace elrom::ingest {
 
-/// What import does with a case that cannot be right (Severity::wrong); what is only suspicious is told as a
-/// warning.
+/// What import does with a case that cannot be right (Severity::wrong);
+/// what is only suspicious is told as a warning.
 enum class Policy { refuse, drop, keep };
 /// @throws UsageError with the known names
 [[nodiscard]] Policy policy_of(std::string_view name);

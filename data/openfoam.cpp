@@ -1,5 +1,5 @@
-// OpenFOAM case directories of an MPPICFoam run (gas fields on a polyMesh, solids as parcels of a Lagrangian
-// cloud).
+// OpenFOAM case directories of an MPPICFoam run (gas fields on
+// a polyMesh, solids as parcels of a Lagrangian cloud).
 //
 // Averages over instants t and parcels p in the cell, with parcel mass m = n rho pi d^3 / 6 and parcel volume
 // v = n pi d^3 / 6 (n = nParticle), cell volume V and gas fraction e_t = 1 - sum_p v / V:
@@ -77,8 +77,8 @@ struct Parcels {
   std::vector<double> density;   //!< [kg/m3]
 };
 
-// `coordinates` holds (a b c d) cell face point, `positions` holds (x y z) cell: the cell is all that is
-// needed.
+// `coordinates` holds (a b c d) cell face point, `positions`
+// holds (x y z) cell: the cell is all that is needed.
 std::vector<std::size_t> read_parcel_cells(const fs::path& cloud, std::size_t n_cells) {
   FoamFile file(FoamFile::exists(cloud / "coordinates") ? cloud / "coordinates" : cloud / "positions");
   file.to_body();

@@ -30,8 +30,8 @@ struct Outlier {
 /// Nothing is told for fewer than ten cases.
 [[nodiscard]] std::vector<Outlier> find_outliers(std::span<const CaseSummary> cases);
 
-/// For every field and case the larger of the two distances, each relative to its usual size, (n_fields,
-/// n_cases).
+/// For every field and case the larger of the two distances,
+/// each relative to its usual size, (n_fields, n_cases).
 [[nodiscard]] MatrixD outlier_distances(std::span<const CaseSummary> cases);
 
 }  // namespace elrom::ingest

@@ -1,6 +1,6 @@
 #pragma once
-// Unit mistakes: an input or a field that is out by just the factor (or offset) between two units of its
-// dimension.
+// Unit mistakes: an input or a field that is out by just the
+// factor (or offset) between two units of its dimension.
 //
 // Every logarithmic feature is regressed robustly (Theil 1950, Sen 1968) on the load, which is itself a
 // median over the gas flows. A value is suspected when it lies far outside the scatter of the other cases and

@@ -13,10 +13,11 @@ namespace elrom::predict {
 
 /// Cells chosen by planes and box, in the order of the mesh.
 struct Cells {
-  std::vector<std::int32_t> planes;   //!< planes with at least one chosen cell, ascending
-  std::size_t n_columns = 0;          //!< of the mesh
-  bool whole_planes = true;           //!< every column of every plane
-  std::vector<std::int32_t> cells;    //!< chosen cells (plane * n_columns + column), (size()); empty: all_cells()
+  std::vector<std::int32_t> planes;  //!< planes with at least one chosen cell, ascending
+  std::size_t n_columns = 0;         //!< of the mesh
+  bool whole_planes = true;          //!< every column of every plane
+  std::vector<std::int32_t>
+      cells;  //!< chosen cells (plane * n_columns + column), (size()); empty: all_cells()
   std::vector<std::int32_t> sources;  //!< place of each in a prediction of `planes`; empty with whole planes
   std::vector<std::int32_t> rows;     //!< place of each in the mesh they were chosen from
 

@@ -9,8 +9,8 @@
 
 namespace elrom::predict {
 
-/// Planes, ascending, each once. "a:b" is a, ..., b - 1; a missing side reaches to the end. Empty text: empty
-/// list.
+/// Planes, ascending, each once. "a:b" is a, ..., b - 1; a
+/// missing side reaches to the end. Empty text: empty list.
 /// @throws UsageError
 [[nodiscard]] std::vector<std::int32_t> parse_planes(std::string_view text, std::size_t n_planes);
 

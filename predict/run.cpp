@@ -84,8 +84,8 @@ struct Desk {
   double compute = 0, write = 0;
 };
 
-/// A prediction's file on its way: all of it but the values is written first, and each field when it is
-/// ready.
+/// A prediction's file on its way: all of it but the values is
+/// written first, and each field when it is ready.
 class HdfFile {
  public:
   struct Begun {

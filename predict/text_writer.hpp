@@ -1,6 +1,6 @@
 #pragma once
-// Predictions as text: CSV, columns for SFW3D, Fluent interpolation file. Formats are described in
-// data/FORMATS.md.
+// Predictions as text: CSV, columns for SFW3D, Fluent interpolation
+// file. Formats are described in data/FORMATS.md.
 
 #include <string>
 

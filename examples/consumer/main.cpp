@@ -8,7 +8,8 @@
 
 int main(int argc, char** argv) {
   return elrom::base::run_app("consumer", [&] {
-    std::cout << elrom::program_version() << " knows " << elrom::field::standard_fields().size() << " fields\n";
+    std::cout << elrom::program_version() << " knows " << elrom::field::standard_fields().size()
+              << " fields\n";
     if (argc < 2) return 0;
     const elrom::model::Predictor predictor(argv[1]);
     for (const auto& field : predictor.fields()) std::cout << field.name << " [" << field.unit << "]\n";

@@ -1,7 +1,5 @@
 #include "cases_tree.hpp"
 
-#include "elrom/io/toml.hpp"
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,6 +9,7 @@
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
 #include "elrom/io/csv.hpp"
+#include "elrom/io/toml.hpp"
 
 namespace elrom::field::detail {
 

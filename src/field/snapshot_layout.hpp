@@ -1,6 +1,6 @@
 #pragma once
-// The parts of a snapshot store that reader and writer share. Layout in data/FORMATS.md, kind
-// "elrom-snapshots".
+// The parts of a snapshot store that reader and writer share.
+// Layout in data/FORMATS.md, kind "elrom-snapshots".
 
 #include <string>
 #include <vector>

@@ -65,8 +65,8 @@ void expect_like_patterns(const std::string& a, const std::string& b, const std:
                     .expected = "the same number of '*' in both, one or more"});
 }
 
-// Partner of every input, applying every pair of patterns in turn (left-right and front-rear may be declared
-// apart).
+// Partner of every input, applying every pair of patterns in
+// turn (left-right and front-rear may be declared apart).
 std::vector<std::int32_t> pair_inputs(const MirrorDeclaration& declaration, const InputSchema& schema) {
   std::vector<std::int32_t> from(schema.size());
   std::iota(from.begin(), from.end(), 0);

@@ -37,8 +37,8 @@ void expect_numeric(hid_t dataset, const std::string& where) {
   }
 }
 
-// A few bytes can claim any shape. Deflate shrinks at most about a thousandfold, so a larger claim is no real
-// file.
+// A few bytes can claim any shape. Deflate shrinks at most
+// about a thousandfold, so a larger claim is no real file.
 void expect_plausible(hid_t dataset, std::size_t n, std::size_t bytes_each, const std::string& where) {
   constexpr std::size_t always_fine = std::size_t{1} << 26;
   constexpr std::size_t most_packed = 1100;

@@ -8,8 +8,8 @@
 
 namespace elrom::io {
 
-/// The mapping lives as long as the object; a file that is replaced by rename meanwhile keeps its old bytes
-/// here.
+/// The mapping lives as long as the object; a file that is
+/// replaced by rename meanwhile keeps its old bytes here.
 class MappedFile {
  public:
   /// @throws InputError when it cannot be opened, is no regular file, or is empty

@@ -85,7 +85,8 @@ class HeaderReader {
       }
     });
     if (seen != 7) throw Fault{"tensor '" + name + "' without dtype, shape or data_offsets"};
-    if (header_.tensors.size() >= most_tensors) throw Fault{"more than " + std::to_string(most_tensors) + " tensors"};
+    if (header_.tensors.size() >= most_tensors)
+      throw Fault{"more than " + std::to_string(most_tensors) + " tensors"};
     const auto size = header_.tensors.size();
     const auto place = header_.tensors.emplace_hint(header_.tensors.end(), std::move(name), std::move(entry));
     if (header_.tensors.size() == size) throw Fault{"tensor '" + place->first + "' twice"};

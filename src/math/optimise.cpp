@@ -55,8 +55,8 @@ struct Point {
   double value;
 };
 
-/// Halves the step until the value falls enough (Armijo on the projected path). @return false: nothing better
-/// found
+/// Halves the step until the value falls enough (Armijo on the
+/// projected path). @return false: nothing better found
 bool line_search(const Objective& objective, const Box& box, const Point& from, const VectorXd& d,
                  Point& to) {
   constexpr double enough = 1e-4;

@@ -60,8 +60,8 @@ std::optional<double> gas_density(const CaseView& view, const AuditSettings& set
 double inflow_below(const CaseView& view, const AuditSettings& settings, const PlaneEdges& plane) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   constexpr double touch = 1e-6;  // [m]: faces that only touch a plane's face do not lie beside it
-  // Cell averages feel an opening in the plane next to it too: one plane's height is left free on either
-  // side.
+  // Cell averages feel an opening in the plane next to it
+  // too: one plane's height is left free on either side.
   const double margin = plane.high - plane.low;
   if (settings.inlets.empty() || plane.high + margin > settings.outlet_low_m + touch) return none;
   double flow = 0;

@@ -19,8 +19,8 @@ std::optional<double> input_value(const CaseView& view, std::string_view name);
 struct PlaneEdges {
   double low = 0, high = 0;  ///< [m]
 };
-/// Lower and upper face of every plane: from the corner points, or halfway between centres where there are
-/// none.
+/// Lower and upper face of every plane: from the corner points,
+/// or halfway between centres where there are none.
 std::vector<PlaneEdges> plane_edges(const field::Mesh& mesh);
 
 std::optional<double> gas_density(const CaseView& view, const AuditSettings& settings);

@@ -64,8 +64,7 @@ void check_cover(const BandedNetworks::Parts& parts) {
           ++answers[static_cast<std::size_t>(submodel.columns[j])];
     const auto wrong = std::find_if(answers.begin(), answers.end(), [](int n) { return n != 1; });
     if (wrong == answers.end()) continue;
-    require(false,
-            "plane " + std::to_string(plane) + ", column " + std::to_string(wrong - answers.begin()),
+    require(false, "plane " + std::to_string(plane) + ", column " + std::to_string(wrong - answers.begin()),
             std::to_string(*wrong) + " submodels", "one");
   }
 }

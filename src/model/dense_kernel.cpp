@@ -6,8 +6,8 @@
 namespace elrom::model {
 namespace {
 
-// Register tile for the instruction set: n_vectors of rows times n_outputs accumulators, with room for the
-// operands.
+// Register tile for the instruction set: n_vectors of rows
+// times n_outputs accumulators, with room for the operands.
 #if defined(__AVX512F__)
 constexpr std::size_t vector_floats = 16;
 constexpr int n_vectors = 5, n_outputs = 4;

@@ -103,8 +103,8 @@ std::span<const float> Network::first_layer_start(std::span<const float> shared,
   if (shared.empty()) return bias;
   const std::span<float> start = workspace.floats(bias.size());
   const Workspace::Frame frame(workspace);
-  // The shared inputs as one padded row: the same kernel and so the same order of additions as for any other
-  // row.
+  // The shared inputs as one padded row: the same kernel and so
+  // the same order of additions as for any other row.
   const std::span<float> row = workspace.floats(shared.size() * lane),
                          sums = workspace.floats(bias.size() * lane);
   std::fill(row.begin(), row.end(), 0.0F);

@@ -14,8 +14,8 @@
 namespace elrom::model {
 namespace {
 
-/// Planes are shared out among threads in multiples of this: the models' kernels work on whole vectors of
-/// planes.
+/// Planes are shared out among threads in multiples of this: the
+/// models' kernels work on whole vectors of planes.
 constexpr std::size_t plane_grain = 16;
 
 std::vector<field::FieldInfo> chosen_fields(const BundleReader& bundle,

@@ -147,9 +147,9 @@ double Uncertainty::quantile(double level) const {
                       .found = base::number(level),
                       .expected = "above 0, below 1"});
   }
-  // Cases, not cells, are the independent samples: their rank decides what level may be promised. The rank is
-  // not rounded up: between two ranks the quantile is interpolated, so that the level is met and not
-  // exceeded.
+  // Cases, not cells, are the independent samples: their rank decides what level
+  // may be promised. The rank is not rounded up: between two ranks the quantile
+  // is interpolated, so that the level is met and not exceeded.
   const double n = static_cast<double>(n_cases_);
   const double promised = (n + 1) * level / n;
   if (promised > 1 + 1e-9) {

@@ -45,7 +45,8 @@ TEST(Sha256, OfEachStartsAndEndsAnywhere) {
     std::vector<std::byte> one(64 * 3 + skipped), other(64 * 40 + skipped);
     for (auto* text : {&one, &other})
       for (auto& byte : *text) byte = static_cast<std::byte>(random());
-    const std::span<const std::byte> a = std::span(one).subspan(skipped), b = std::span(other).subspan(skipped);
+    const std::span<const std::byte> a = std::span(one).subspan(skipped),
+                                     b = std::span(other).subspan(skipped);
     const std::span<const std::byte> both[] = {a, b};
     EXPECT_EQ(sha256_of_each(both), (std::vector{sha256(a), sha256(b)})) << skipped << " bytes in";
   }

@@ -1,5 +1,5 @@
-// bench-predict: what a prediction costs, beside the floor of this machine and beside the same networks in
-// LibTorch.
+// bench-predict: what a prediction costs, beside the floor of
+// this machine and beside the same networks in LibTorch.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -119,7 +119,8 @@ class Benchmark {
   void one_shot(const Setup& setup) {
     const auto timings = show("one case, nine fields, file on the disk", command(setup), options_.repeats);
     const Floor floor = show_floor(setup, timings, true);
-    const auto cached = show("the same, not waiting for the disk", command(setup, {"--no-sync"}), options_.repeats);
+    const auto cached =
+        show("the same, not waiting for the disk", command(setup, {"--no-sync"}), options_.repeats);
     const Floor cached_floor = show_floor(setup, cached, false);
     one_shot_ = timings;
     result_["one_shot_no_sync_ms"] = cached.median_ms;

@@ -128,8 +128,7 @@ std::string Floor::text() const {
       "write {:.1f} MB at {:.2f} GB/s{} ({:.2f})",
       total_ms(), bytes_read * 1e-6, read_rate * 1e-9, 1e3 * bytes_read / read_rate, multiply_adds * 1e-6,
       sgemm_rate * 1e-9, blas ? "OpenBLAS" : "Eigen", 1e3 * multiply_adds / sgemm_rate, bytes_written * 1e-6,
-      write_rate * 1e-9,
-      synced ? " with fsync" : "", 1e3 * bytes_written / write_rate);
+      write_rate * 1e-9, synced ? " with fsync" : "", 1e3 * bytes_written / write_rate);
 }
 
 nlohmann::json Floor::json() const {

@@ -1,6 +1,6 @@
 #pragma once
-// The least time that a prediction could take here: bytes in, multiply-adds, bytes out, each at its measured
-// rate.
+// The least time that a prediction could take here: bytes in,
+// multiply-adds, bytes out, each at its measured rate.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
-// bench-screening: the batched screening at full size, the same networks one after another with LibTorch (a
-// sample of columns), and the closed-form screen; how long each takes and how often they agree on a column's
-// band.
+// bench-screening: the batched screening at full size, the same networks one
+// after another with LibTorch (a sample of columns), and the closed-form screen;
+// how long each takes and how often they agree on a column's band.
 
 #include <fmt/format.h>
 

@@ -62,8 +62,8 @@ TEST(OpenFoam, CellsWithoutParcelsHoldGasVelocityAndAMedianDiameter) {
 
   EXPECT_EQ(found.values(0, empty), found.values(3, empty));
   EXPECT_EQ(found.values(2, empty), found.values(5, empty));
-  // The run's d50, 375.266 um, is an input of the case; the parcels' median estimates it from a finite
-  // sample.
+  // The run's d50, 375.266 um, is an input of the case; the
+  // parcels' median estimates it from a finite sample.
   EXPECT_NEAR(found.values(7, empty), 375.266e-6, 0.05 * 375.266e-6);
 }
 

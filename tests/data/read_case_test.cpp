@@ -32,8 +32,8 @@ TEST(ReadCase, MissingFilesAndOtherDirectoriesAreRefused) {
               ThrowsMessage<InputError>(HasSubstr("directory is no case")));
 }
 
-// Every length ends in an InputError that names the file; the test would die with a crash inside the HDF5
-// library.
+// Every length ends in an InputError that names the file; the
+// test would die with a crash inside the HDF5 library.
 TEST(ReadCase, TruncatedExportsAreRefusedAtEveryLength) {
   const test::TemporaryFolder folder;
   const auto whole = bytes_of(data / "cases/train_000.h5");

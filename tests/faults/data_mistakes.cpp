@@ -38,8 +38,8 @@ Tally unit_mistakes(const Workshop& shop) {
     tally.count(false, "false alarm: " + cases[mistake.i_case].name + " " + mistake.quantity);
   }
   const auto corrections = ingest::possible_corrections(cases[0].schema, cases[0].fields);
-  // All of them in the full campaign; every 61st (a prime, so that all kinds and cases come up) in the small
-  // one.
+  // All of them in the full campaign; every 61st (a prime, so
+  // that all kinds and cases come up) in the small one.
   const std::size_t stride = shop.small ? 61 : 1;
   for (std::size_t k = 0; k < cases.size() * corrections.size(); k += stride) {
     const auto i = k % cases.size();

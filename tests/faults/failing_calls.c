@@ -117,7 +117,9 @@ extern void* __libc_memalign(size_t, size_t);
 void* malloc(size_t n) { return memory_is_out() ? NULL : __libc_malloc(n); }
 void* calloc(size_t n, size_t size) { return memory_is_out() ? NULL : __libc_calloc(n, size); }
 void* realloc(void* old, size_t n) { return memory_is_out() ? NULL : __libc_realloc(old, n); }
-void* aligned_alloc(size_t alignment, size_t n) { return memory_is_out() ? NULL : __libc_memalign(alignment, n); }
+void* aligned_alloc(size_t alignment, size_t n) {
+  return memory_is_out() ? NULL : __libc_memalign(alignment, n);
+}
 int posix_memalign(void** block, size_t alignment, size_t n) {
   void* memory = memory_is_out() ? NULL : __libc_memalign(alignment, n);
   if (memory == NULL) return ENOMEM;

@@ -24,8 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 using Model = std::shared_ptr<const model::FieldModel>;
 
-/// Four cells, three inputs, five cases: a bundle of a few kilobytes, so that a fuzzer tries thousands a
-/// second.
+/// Four cells, three inputs, five cases: a bundle of a few
+/// kilobytes, so that a fuzzer tries thousands a second.
 study::FieldData small_data(study::CaseSet& cases, const field::FieldInfo& info) {
   constexpr Eigen::Index n_cases = 5, n_cells = 4;
   cases.mesh = field::make_furnace_mesh({}, 2, 1, 2);
@@ -116,8 +116,8 @@ void load_and_predict(const fs::path& path) {
   predictor.predict(inputs, values, width, scratch);
 }
 
-/// With the header's digest made true where there is room for one: changed headers would all end there
-/// otherwise.
+/// With the header's digest made true where there is room for
+/// one: changed headers would all end there otherwise.
 std::vector<std::uint8_t> with_true_digest(Bytes input) {
   std::vector<std::uint8_t> bytes(input.begin(), input.end());
   std::uint64_t length = 0;

@@ -104,7 +104,8 @@ bool is_a_header(const Json& document, const std::multiset<std::string>& good_te
     if (name != metadata_key) {
       tensors.insert(value.dump());
       for (const auto& [key, item] : value.items())
-        if (item.is_array() && !std::ranges::all_of(item, [](const Json& n) { return n.is_number_unsigned(); }))
+        if (item.is_array() &&
+            !std::ranges::all_of(item, [](const Json& n) { return n.is_number_unsigned(); }))
           return false;
     } else if (!std::ranges::all_of(value, [](const Json& text) { return text.is_string(); })) {
       return false;

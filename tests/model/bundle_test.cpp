@@ -246,7 +246,8 @@ TEST(Bundle, SomePlanesOfTheMeshAreRowsOfTheWhole) {
   ASSERT_EQ(part.n_cells(), 2 * reader.n_columns());
   for (std::size_t i = 0; i < part.n_cells(); ++i) {
     const auto cell = (i < reader.n_columns() ? 1 : 2) * reader.n_columns() + i;
-    EXPECT_EQ(part.centre.row(static_cast<Eigen::Index>(i)), whole.centre.row(static_cast<Eigen::Index>(cell)));
+    EXPECT_EQ(part.centre.row(static_cast<Eigen::Index>(i)),
+              whole.centre.row(static_cast<Eigen::Index>(cell)));
     EXPECT_EQ(part.volume[i], whole.volume[cell]);
     EXPECT_EQ(part.corners[8 * i + 5], whole.corners[8 * cell + 5]);
   }

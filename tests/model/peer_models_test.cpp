@@ -1,5 +1,5 @@
-// Every closed-form model: the same after save and load, and plane by plane independent of what else is
-// asked.
+// Every closed-form model: the same after save and load, and
+// plane by plane independent of what else is asked.
 
 #include <gtest/gtest.h>
 

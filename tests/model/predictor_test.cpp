@@ -17,8 +17,8 @@ thread_local std::size_t n_allocations = 0;
 }
 
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // inlined, the pairs below look unlike to GCC 12
-// Counted for this program alone: the contract "allocates nothing after the first call" is tested, not
-// believed.
+// Counted for this program alone: the contract "allocates
+// nothing after the first call" is tested, not believed.
 void* operator new(std::size_t size) {
   ++n_allocations;
   if (void* memory = std::malloc(size)) return memory;
@@ -107,8 +107,9 @@ TEST_F(PredictorTest, TellsOfEachFieldOnceWhenItsValuesAreThere) {
                            [&](std::size_t i) {
                              ++n_told[i];
                              const auto begin = static_cast<std::ptrdiff_t>(i * n_cells);
-                             n_right[i] += std::equal(values.begin() + begin, values.begin() + begin + n_cells,
-                                                      expected.begin() + begin);
+                             n_right[i] +=
+                                 std::equal(values.begin() + begin, values.begin() + begin + n_cells,
+                                            expected.begin() + begin);
                            }});
     EXPECT_EQ(n_first, 1);
     EXPECT_THAT(n_told, ::testing::Each(1)) << n_threads << " threads";
@@ -122,7 +123,8 @@ TEST_F(PredictorTest, WhatACallerDoesAlongsideMayFail) {
   Predictor::Scratch scratch;
 
   for (const int n_threads : {1, 2}) {
-    EXPECT_THROW(predictor.predict(inputs_, values, {}, scratch, n_threads, {.first = [] { throw SystemError("disk"); }}),
+    EXPECT_THROW(predictor.predict(inputs_, values, {}, scratch, n_threads,
+                                   {.first = [] { throw SystemError("disk"); }}),
                  SystemError);
   }
 }

@@ -1,5 +1,5 @@
-// Readers while a bundle is replaced: each sees the old one or the new one, whole. For the thread sanitizer
-// too.
+// Readers while a bundle is replaced: each sees the old one or
+// the new one, whole. For the thread sanitizer too.
 
 #include <gmock/gmock.h>
 

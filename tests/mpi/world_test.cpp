@@ -85,8 +85,8 @@ TEST_F(Ranks, ARankWithoutMemoryEndsTheJobInsteadOfHanging) {
 
 constexpr int launcher = -1;
 
-/// The process of this rank, or the launcher, in the job whose command line holds `mark`; 0 when there is
-/// none.
+/// The process of this rank, or the launcher, in the job
+/// whose command line holds `mark`; 0 when there is none.
 pid_t process_of_rank(int rank, const std::string& mark) {
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const auto name = entry.path().filename().string();
@@ -96,8 +96,8 @@ pid_t process_of_rank(int rank, const std::string& mark) {
     const auto rank_is =
         environment.find("OMPI_COMM_WORLD_RANK=" + (rank == launcher ? "" : std::to_string(rank)));
     const auto program = fs::path(command.substr(0, command.find('\0'))).filename();
-    // The launcher is what is neither a rank nor the shell before it; it may go by another name than it was
-    // called.
+    // The launcher is what is neither a rank nor the shell before
+    // it; it may go by another name than it was called.
     const bool is_it =
         rank == launcher ? rank_is == std::string::npos && program != "sh" : rank_is != std::string::npos;
     if (is_it && command.find(mark) != std::string::npos && command.find("elrom-train") != std::string::npos)

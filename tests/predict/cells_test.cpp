@@ -34,7 +34,8 @@ TEST(Cells, ARegionKeepsPlanesAndColumnsInOrder) {
 }
 
 TEST(Cells, PlanesAndRegionLimitTogether) {
-  EXPECT_THAT(choose_cells(test::mesh_part(mesh(), {0, 1}), {0, 1}, parse_box(":,:,20:")).planes, ElementsAre(1));
+  EXPECT_THAT(choose_cells(test::mesh_part(mesh(), {0, 1}), {0, 1}, parse_box(":,:,20:")).planes,
+              ElementsAre(1));
   EXPECT_THROW((void)choose_cells(test::mesh_part(mesh(), {0}), {0}, parse_box(":,:,20:")), UsageError);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Small data sets, each hard in its own way: what breaks statistics, scalers, Gaussian processes and
-// networks.
+// Small data sets, each hard in its own way: what breaks
+// statistics, scalers, Gaussian processes and networks.
 
 #include <functional>
 #include <string>

@@ -84,8 +84,8 @@ TEST(Auto, DoesNotBlendForTheSakeOfOneCase) {
 }
 
 TEST(Auto, WeighsBandsByThemselvesWhereThatPays) {
-  // Each is right in its own half; "right" is better on the whole, and its error sorts columns into two
-  // bands.
+  // Each is right in its own half; "right" is better on the
+  // whole, and its error sorts columns into two bands.
   Contest contest;
   const Fake left("left", 1.1F * lopsided(contest.data, "a", 0.1F)),
       right("right", lopsided(contest.data, "b", 10));

@@ -64,8 +64,11 @@ TEST(SpreadFolds, KeepCasesOfEqualInputsTogether) {
 
   const Folds folds = spread_folds(cases, math::all_rows(6), 3);
 
-  const auto holds = [](const std::vector<std::size_t>& fold, std::size_t row) { return std::ranges::count(fold, row) == 1; };
-  for (const auto& fold : folds) EXPECT_TRUE(holds(fold, 0) == holds(fold, 1) && holds(fold, 0) == holds(fold, 4));
+  const auto holds = [](const std::vector<std::size_t>& fold, std::size_t row) {
+    return std::ranges::count(fold, row) == 1;
+  };
+  for (const auto& fold : folds)
+    EXPECT_TRUE(holds(fold, 0) == holds(fold, 1) && holds(fold, 0) == holds(fold, 4));
   EXPECT_EQ(folds[0].size() + folds[1].size() + folds[2].size(), 6U);
 }
 

@@ -13,8 +13,8 @@
 namespace elrom::study {
 namespace {
 
-// "Trains" in closed form: a network without hidden layers, by ridge. Enough to see what the method does with
-// it.
+// "Trains" in closed form: a network without hidden layers, by
+// ridge. Enough to see what the method does with it.
 class RidgeTrainer final : public Trainer {
  public:
   explicit RidgeTrainer(int n_diverging = 0) : n_diverging_(n_diverging) {}

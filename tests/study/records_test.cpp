@@ -72,8 +72,8 @@ TEST(Records, WhatDoesNotTrainDoesNotMoveTheScalers) {
   EXPECT_EQ(after.outputs.deviation, before.outputs.deviation);
 }
 
-// The toy's field is symmetric as the furnace is: what a mirrored case shows is what the toy has for mirrored
-// inputs.
+// The toy's field is symmetric as the furnace is: what a mirrored
+// case shows is what the toy has for mirrored inputs.
 TEST(Records, MirrorImagesAreTheFieldsOfMirroredInputs) {
   const auto cases = test::toy_cases(n_cases);
   const auto data = test::toy_field(cases);

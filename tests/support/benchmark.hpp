@@ -83,8 +83,8 @@ inline std::filesystem::path generate_store(const std::filesystem::path& folder,
   const auto store = folder / "snapshots.h5";
   run_program(sibling("elrom-data"),
               {"generate", "--cases", small ? "20" : "249", "--planes", small ? "6" : "66", "--columns",
-               small ? "40" : "840", "--fields", small ? "2" : "9", "--inputs", "26", "--seed", "1", "--store",
-               store.string()});
+               small ? "40" : "840", "--fields", small ? "2" : "9", "--inputs", "26", "--seed", "1",
+               "--store", store.string()});
   return store;
 }
 

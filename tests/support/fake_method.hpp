@@ -41,8 +41,8 @@ inline MatrixF noise(const study::FieldData& data, std::string_view name, double
   return errors;
 }
 
-/// The same of size 0.1, with the given factor in the left half of every plane, and its inverse in the right
-/// half.
+/// The same of size 0.1, with the given factor in the left
+/// half of every plane, and its inverse in the right half.
 inline MatrixF lopsided(const study::FieldData& data, std::string_view name, float left) {
   MatrixF errors = noise(data, name, 0.1);
   const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);

@@ -15,7 +15,8 @@ inline field::Mesh mesh_part(const field::Mesh& whole, const std::vector<std::in
   part.volume.clear();
   part.corners.clear();
   for (std::size_t i = 0; i < part.n_cells(); ++i) {
-    const auto cell = static_cast<std::size_t>(planes[i / part.n_columns]) * part.n_columns + i % part.n_columns;
+    const auto cell =
+        static_cast<std::size_t>(planes[i / part.n_columns]) * part.n_columns + i % part.n_columns;
     part.centre.row(static_cast<Eigen::Index>(i)) = whole.centre.row(static_cast<Eigen::Index>(cell));
     part.volume.push_back(whole.volume[cell]);
     for (std::size_t k = 0; k < 8; ++k) part.corners.push_back(whole.corners[cell * 8 + k]);

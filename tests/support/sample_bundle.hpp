@@ -1,6 +1,6 @@
 #pragma once
-// Bundles of any size with networks of random weights, for tests and benchmarks: shapes as trained, values
-// meaningless.
+// Bundles of any size with networks of random weights, for tests
+// and benchmarks: shapes as trained, values meaningless.
 
 #include <cmath>
 #include <memory>

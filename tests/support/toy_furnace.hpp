@@ -1,6 +1,6 @@
 #pragma once
-// A small furnace with mirrors and cases whose fields are known functions of the inputs: for tests of
-// methods.
+// A small furnace with mirrors and cases whose fields are
+// known functions of the inputs: for tests of methods.
 
 #include <cmath>
 #include <string>
@@ -34,8 +34,7 @@ inline study::CaseSet toy_cases(std::size_t n_cases, bool mirrors = true) {
   }
   if (mirrors) {
     cases.mirrors = {
-        field::resolve({"left-right", 'y', {{"*_left", "*_right"}}, {"split"}}, cases.schema,
-                       cases.mesh),
+        field::resolve({"left-right", 'y', {{"*_left", "*_right"}}, {"split"}}, cases.schema, cases.mesh),
         field::resolve({"front-rear", 'x', {{"*_front_*", "*_rear_*"}}, {}}, cases.schema, cases.mesh)};
   }
   return cases;

@@ -92,8 +92,8 @@ TEST(BatchedScreening, EndsWithTheErrorsOfTheLoopOfSingleNetworks) {
   for (Eigen::Index b = 0; b < 2; ++b)
     for (Eigen::Index c = 0; c < 3; ++c) {
       const double expected = single.build_error(b, c);
-      // The same start, order and rules; only the rounding of float32 sums differs, and grows over the
-      // epochs.
+      // The same start, order and rules; only the rounding of
+      // float32 sums differs, and grows over the epochs.
       EXPECT_NEAR(batched.build_error(b, columns[static_cast<std::size_t>(c)]), expected, 0.02 * expected);
     }
 }

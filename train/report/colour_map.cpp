@@ -13,8 +13,8 @@ struct Lab {
   double l, a, b;
 };
 
-// OKLab to linear sRGB and back: matrices of Ottosson (2020), "A perceptual color space for image
-// processing".
+// OKLab to linear sRGB and back: matrices of Ottosson (2020),
+// "A perceptual color space for image processing".
 std::array<double, 3> linear_rgb(const Lab& c) {
   const double l = std::pow(c.l + 0.3963377774 * c.a + 0.2158037573 * c.b, 3);
   const double m = std::pow(c.l - 0.1055613458 * c.a - 0.0638541728 * c.b, 3);
@@ -40,8 +40,8 @@ double decode(std::uint8_t value) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
-// The most colourful displayable colour of a lightness and hue, up to `chroma`: lightness is never traded for
-// colour.
+// The most colourful displayable colour of a lightness and hue,
+// up to `chroma`: lightness is never traded for colour.
 Rgb colour(double l, double chroma, double hue_degrees) {
   const double hue = hue_degrees * std::numbers::pi / 180;
   const auto lab = [&](double c) { return Lab{l, c * std::cos(hue), c * std::sin(hue)}; };

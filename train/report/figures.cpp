@@ -25,8 +25,8 @@ Grid grid_of(const field::Mesh& mesh) {
   return {n_x, mesh.n_columns / n_x};
 }
 
-// Corners of hexahedron `cell` projected on (axis, z): the mean of the two corners that lie behind one
-// another.
+// Corners of hexahedron `cell` projected on (axis, z): the
+// mean of the two corners that lie behind one another.
 std::array<float, 8> quad_from_points(const field::Mesh& mesh, std::size_t cell, int axis) {
   // VTK order: 0 1 2 3 around the lower face, 4 5 6 7 above them; 0-1 runs along x, 0-3 along y.
   constexpr std::array<std::array<int, 2>, 4> along_x{{{0, 3}, {1, 2}, {5, 6}, {4, 7}}};

@@ -157,8 +157,8 @@ CaseSpan::CaseSpan(const MatrixF& values) {
   const Eigen::RowVectorXd mean = centred.colwise().mean();
   mean_.assign(mean.data(), mean.data() + mean.size());
   centred.rowwise() -= mean;
-  // Modes by the small Gram matrix (method of snapshots, Sirovich 1987); tiny eigenvalues are rounding, not
-  // modes.
+  // Modes by the small Gram matrix (method of snapshots, Sirovich
+  // 1987); tiny eigenvalues are rounding, not modes.
   const Eigen::MatrixXd gram = centred * centred.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
   constexpr double negligible = 1e-10;

@@ -104,8 +104,8 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
-// Importance of a hyperparameter: absolute rank correlation (Spearman) with the error, averaged over the
-// searches.
+// Importance of a hyperparameter: absolute rank correlation
+// (Spearman) with the error, averaged over the searches.
 std::string importance_chart(const std::vector<study::TrialStore::Search>& searches) {
   std::vector<svg::BarRow> rows;
   for (const auto& dimension : dimensions()) {

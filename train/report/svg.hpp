@@ -1,8 +1,7 @@
 #pragma once
-// Line, band, bar and point charts as inline SVG text. Colours and strokes come from the page's style sheet
-// by class
-// ("s0" ... the methods' series, "truth", "rule"), so one drawing serves the light and the dark page and
-// print.
+// Line, band, bar and point charts as inline SVG text. Colours and strokes come
+// from the page's style sheet by class ("s0" ... the methods' series, "truth",
+// "rule"), so one drawing serves the light and the dark page and print.
 
 #include <optional>
 #include <span>

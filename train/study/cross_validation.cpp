@@ -45,7 +45,8 @@ Folds spread_folds(const CaseSet& cases, std::span<const std::size_t> rows, std:
     const auto values = cases.inputs.row(static_cast<Eigen::Index>(row));
     return std::vector<double>(values.begin(), values.end());
   };
-  std::map<std::vector<double>, std::vector<std::size_t>> groups;  // of equal inputs, whatever load they state
+  std::map<std::vector<double>, std::vector<std::size_t>>
+      groups;  // of equal inputs, whatever load they state
   for (const std::size_t row : rows) groups[inputs(row)].push_back(row);
   if (groups.size() < 2) return load_grouped_folds(cases.loads, rows, n_folds, rows.size());
   std::multimap<double, const std::vector<std::size_t>*> by_load;

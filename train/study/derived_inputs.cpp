@@ -82,8 +82,8 @@ class Builder {
     class_of_.push_back(class_index);
   }
 
-  /// log of a form that is positive in all training cases; held above a thousandth of its mean outside of
-  /// them.
+  /// log of a form that is positive in all training cases;
+  /// held above a thousandth of its mean outside of them.
   [[nodiscard]] static FeatureTerm log_of(const LinearForm& form, const Range& range, double coefficient) {
     return {FeatureTerm::Kind::logarithm, coefficient, form, {}, 1e-3 * range.mean};
   }

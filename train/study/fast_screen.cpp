@@ -1,7 +1,7 @@
-// The closed-form screen: ridge on random relu features. With the eigenvectors of the features' Gram matrix
-// every ridge parameter costs one diagonal, and the error of leaving case i out is (I - H_ii)^-1 (y - H y)_i,
-// where block i holds all planes of the case (the block form of the leave-one-out residual of any linear
-// smoother).
+// The closed-form screen: ridge on random relu features. With the eigenvectors of the
+// features' Gram matrix every ridge parameter costs one diagonal, and the error of
+// leaving case i out is (I - H_ii)^-1 (y - H y)_i, where block i holds all planes of the
+// case (the block form of the leave-one-out residual of any linear smoother).
 
 #include "fast_screen.hpp"
 

@@ -5,8 +5,8 @@
 namespace elrom::study {
 namespace {
 
-// Sixteen floats as the compiler's own vector: one register with AVX-512, two with AVX2, plain code
-// elsewhere.
+// Sixteen floats as the compiler's own vector: one register
+// with AVX-512, two with AVX2, plain code elsewhere.
 typedef float Vector __attribute__((vector_size(64), may_alias));
 
 const Vector* vectors(const Lane16* lanes) { return reinterpret_cast<const Vector*>(lanes); }

@@ -34,8 +34,8 @@ struct LaneShape {
 /// One network by itself: flat parameters in the lane order, W (k, u), v (u), c.
 using ColumnParameters = std::vector<float>;
 
-/// Records as the lanes read them: (rows padded to `tile`, k), the constant 1 after the inputs, zeros after
-/// it.
+/// Records as the lanes read them: (rows padded to `tile`, k),
+/// the constant 1 after the inputs, zeros after it.
 [[nodiscard]] MatrixF pad_inputs(const MatrixF& inputs, const LaneShape& shape);
 
 /// @param x (n_rows, k), n_rows a multiple of `tile` @param activations (n_rows * u) @param y (n_rows)

@@ -1,6 +1,6 @@
 #pragma once
-// Hyperparameters of a smoother by the leave-one-case-out error of whole fields, in closed form; internal to
-// study.
+// Hyperparameters of a smoother by the leave-one-case-out error
+// of whole fields, in closed form; internal to study.
 
 #include <Eigen/Core>
 

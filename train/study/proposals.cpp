@@ -51,8 +51,8 @@ void minimise(nlopt::opt& optimiser, std::vector<double> start, int max_calls, b
     double value = 0;
     optimiser.optimize(start, value);
   } catch (const std::exception&) {
-    // Forced stop, or rounding limits reached: what counts is in the trials; an error of Ask is thrown again
-    // below.
+    // Forced stop, or rounding limits reached: what counts is in
+    // the trials; an error of Ask is thrown again below.
   }
   if (bridge.failure) std::rethrow_exception(bridge.failure);
 }

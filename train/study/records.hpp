@@ -1,6 +1,6 @@
 #pragma once
-// Records of one field: one plane of one case each, standardised (source: eq. 6.1). Internal to the networks'
-// method.
+// Records of one field: one plane of one case each, standardised
+// (source: eq. 6.1). Internal to the networks' method.
 
 #include "elrom/model/banded_networks.hpp"
 #include "elrom/study/banding.hpp"
@@ -34,8 +34,8 @@ struct RecordSet {
 [[nodiscard]] RecordSet make_records(const FieldData& data, std::span<const std::size_t> cases,
                                      const std::vector<Part>& part, const RecordOptions& options);
 
-/// Records and columns of one band; with a mask, records of planes that the band does not answer for are left
-/// out.
+/// Records and columns of one band; with a mask, records of
+/// planes that the band does not answer for are left out.
 [[nodiscard]] TrainingProblem make_problem(const ScreeningData& records, const Band& band);
 
 /// How much each standardised input moves the field's principal components: 1 for the strongest input, at

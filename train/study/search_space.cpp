@@ -7,8 +7,8 @@
 namespace elrom::study {
 namespace {
 
-// From low to high, a fixed number of bins a decade, each value rounded to three digits so that its text is
-// exact.
+// From low to high, a fixed number of bins a decade, each
+// value rounded to three digits so that its text is exact.
 std::vector<double> log_bins(const std::vector<double>& range, double bins_a_decade) {
   const double decades = std::log10(range[1] / range[0]);
   const auto n = static_cast<std::size_t>(std::round(decades * bins_a_decade)) + 1;

@@ -1,12 +1,11 @@
 #pragma once
 // One row a setting: key, meaning, how it is read from TOML and written back. Internal to settings*.cpp.
 
-#include "elrom/io/toml.hpp"
-
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "elrom/io/toml.hpp"
 #include "elrom/study/settings.hpp"
 
 namespace elrom::study {

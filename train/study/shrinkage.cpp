@@ -99,8 +99,8 @@ void Shrinkage::learn_cells(const MatrixF& deviations, const MatrixF& truth, dou
                        truth.row(i).transpose().cast<double>().array();
     square += deviations.row(i).transpose().cast<double>().cwiseAbs2();
   }
-  // About a sixth of the box each way: local enough to tell bed from freeboard, wide enough to average the
-  // noise.
+  // About a sixth of the box each way: local enough to tell bed
+  // from freeboard, wide enough to average the noise.
   std::array<std::size_t, 3> half{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     half[axis] = std::min<std::size_t>(transform_->sizes()[axis] / 12, 5);

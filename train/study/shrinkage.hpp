@@ -11,8 +11,8 @@
 
 namespace elrom::study {
 
-/// Cells of the mesh as a box (planes, rows, cells of a row), when its columns lie in rows of equal y; else
-/// nothing.
+/// Cells of the mesh as a box (planes, rows, cells of a row),
+/// when its columns lie in rows of equal y; else nothing.
 [[nodiscard]] std::optional<std::array<std::size_t, 3>> box_of(const field::Mesh& mesh);
 
 class Shrinkage {

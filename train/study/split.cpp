@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t stratum_size = 10;
 
-// Deals parts so that after every item each part is as near to its share as it can be (largest remainder
-// first).
+// Deals parts so that after every item each part is as near to
+// its share as it can be (largest remainder first).
 class Dealer {
  public:
   explicit Dealer(std::span<const double> fractions) : fractions_(fractions.begin(), fractions.end()) {}

@@ -17,8 +17,7 @@ void save_checkpoint(const std::filesystem::path& path, const std::string& diges
 
 /// Takes the state of a checkpoint over.
 /// @return false when there is none, when it is of another training, or when it cannot be read: then the
-/// training
-///         starts from nothing, which costs time and nothing else
+///         training starts from nothing, which costs time and nothing else
 [[nodiscard]] bool load_checkpoint(const std::filesystem::path& path, const std::string& digest,
                                    Training& training);
 

@@ -39,8 +39,8 @@ class Mlp {
   /// @param widths inputs, hidden layers ..., outputs
   Mlp(std::vector<std::int64_t> widths, model::Activation activation, ::torch::Device device);
 
-  /// Uniform in +-1 / sqrt(n_in of the layer), weights and biases alike (LibTorch's own default for linear
-  /// layers).
+  /// Uniform in +-1 / sqrt(n_in of the layer), weights and biases
+  /// alike (LibTorch's own default for linear layers).
   void initialise(base::Seed seed);
   [[nodiscard]] ::torch::Tensor& parameters() { return parameters_; }
   [[nodiscard]] ::torch::Tensor& gradient() { return gradient_; }

@@ -27,8 +27,8 @@ class Training {
   Training(const study::TrainingProblem& problem, const study::Hyperparameters& hyperparameters,
            base::Seed seed, Place place);
 
-  /// One sweep over the training records in the epoch's own random order, then an evaluation; keeps the best
-  /// weights.
+  /// One sweep over the training records in the epoch's own random
+  /// order, then an evaluation; keeps the best weights.
   /// @return false when a loss was not finite
   bool run_epoch();
   /// Back to the first weights at another rate.

@@ -19,8 +19,7 @@ struct ChildLimits {
 /// Runs `work` in a fork of this process and waits for it.
 /// @param culprit for messages: "the HDF5 library"; @param where the file it reads
 /// @throws InputError when the child crashed, took too long or too much memory; or with the message of the
-/// error that
-///         `work` threw there. Nothing that `work` did remains.
+///         error that `work` threw there. Nothing that `work` did remains.
 void try_in_child(const std::string& culprit, const std::string& where, const std::function<void()>& work,
                   const ChildLimits& limits = {});
 

@@ -1,7 +1,7 @@
 #pragma once
-// Errors of the whole library: one root type, one subtype for each way a user can be at fault or out of luck.
-// Libraries throw these and never exit or print; only base/app.hpp turns them into one line and an exit
-// status.
+// Errors of the whole library: one root type, one subtype for each way a user
+// can be at fault or out of luck. Libraries throw these and never exit or
+// print; only base/app.hpp turns them into one line and an exit status.
 
 #include <stdexcept>
 #include <string>

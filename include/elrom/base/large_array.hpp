@@ -23,15 +23,15 @@ class LargeArrayAllocator {
 
   T* allocate(std::size_t n) {
     if (n * sizeof(T) < huge_page / 2)
-      return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t{alignment}));
+      return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{alignment}));
     const std::size_t bytes = (n * sizeof(T) + huge_page - 1) / huge_page * huge_page;
-    void* memory = ::operator new(bytes, std::align_val_t{huge_page});
+    void* memory = ::operator new (bytes, std::align_val_t{huge_page});
     ::madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: where it is refused, ordinary pages do
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t n) {
     const std::size_t aligned = n * sizeof(T) < huge_page / 2 ? alignment : huge_page;
-    ::operator delete(memory, std::align_val_t{aligned});
+    ::operator delete (memory, std::align_val_t{aligned});
   }
   /// Default-initialised: a number is left as it is.
   template <class U>

@@ -35,8 +35,8 @@ class Log {
 /// Swallows everything; for tests and for callers who do not care.
 Log& silent_log();
 
-/// To standard error: a live line with rate and remaining time on a terminal, plain lines every few seconds
-/// otherwise.
+/// To standard error: a live line with rate and remaining time on
+/// a terminal, plain lines every few seconds otherwise.
 /// @param lowest messages below this level are dropped; progress is worth an info
 std::unique_ptr<Log> make_console_log(Level lowest = Level::info);
 

@@ -50,8 +50,7 @@ struct CaseInputs {
 /// [kg/s]": 161.1, ...}} or a list of such) and TOML (the same keys; [[cases]] for several), told apart by
 /// the file's ending.
 /// @throws InputError for a missing or unknown input (with the nearest name), a unit of another dimension, a
-/// value that
-///         is no finite number, a repeated case name; the message says file, line and column
+///         value that is no finite number, a repeated case name; the message says file, line and column
 [[nodiscard]] std::vector<CaseInputs> read_cases(const std::filesystem::path& path,
                                                  const InputSchema& schema);
 

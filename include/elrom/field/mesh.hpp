@@ -1,7 +1,7 @@
 #pragma once
-// The reduced mesh: n_planes horizontal planes of n_columns cells each (66 x 840 for Lagisza); all sizes come
-// from data. Order everywhere: plane-major, cell = i_plane * n_columns + i_column; points shared by
-// hexahedra.
+// The reduced mesh: n_planes horizontal planes of n_columns cells each (66 x 840
+// for Lagisza); all sizes come from data. Order everywhere: plane-major, cell =
+// i_plane * n_columns + i_column; points shared by hexahedra.
 
 #include <cstddef>
 #include <cstdint>

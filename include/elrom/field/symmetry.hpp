@@ -1,6 +1,6 @@
 #pragma once
-// Declared mirror symmetries of the furnace: how a mirror acts on inputs, on cells and on the sign of a
-// field.
+// Declared mirror symmetries of the furnace: how a mirror
+// acts on inputs, on cells and on the sign of a field.
 
 #include <cstdint>
 #include <span>

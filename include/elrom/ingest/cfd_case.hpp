@@ -14,12 +14,12 @@
 namespace elrom::ingest {
 
 struct CfdCase {
-  field::CaseRecord record;             ///< inputs in `schema`'s order, SI
-  field::InputSchema schema;            ///< empty when the format carries no boundary conditions
-  MatrixD centre;                       //!< cell centres [m], (n_cells, 3)
-  std::vector<double> volume;           //!< [m3], (n_cells); empty when the format carries none
+  field::CaseRecord record;    ///< inputs in `schema`'s order, SI
+  field::InputSchema schema;   ///< empty when the format carries no boundary conditions
+  MatrixD centre;              //!< cell centres [m], (n_cells, 3)
+  std::vector<double> volume;  //!< [m3], (n_cells); empty when the format carries none
   std::vector<field::FieldInfo> fields;
-  MatrixF values;                       //!< SI, (n_fields, n_cells)
+  MatrixF values;  //!< SI, (n_fields, n_cells)
 };
 
 /// EL3D export, one HDF5 file a case (data/FORMATS.md, "EL3D export").

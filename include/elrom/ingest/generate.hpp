@@ -4,11 +4,11 @@
 //
 // Inputs: a Latin hypercube over load and every input's own deviation; load drives all flows together.
 // Fields, with s = 0 in the middle of a cross-section and 1 at its walls:
-//   gas upward velocity   flow entered below / (density at the case's temperature x area), flat core, slow at
-//   walls solids upward         gas less the terminal velocity of d50, falling along the walls (core and
-//   annulus) volume fraction       dense bed, then exponential decay towards a dilute limit; denser at walls;
-//   scaled so that the
-//                         weight of solids is the case's inventory
+//   gas upward velocity   flow entered below / (density at the case's temperature x area), flat core, slow
+//                         at walls
+//   solids upward         gas less the terminal velocity of d50, falling along the walls (core and annulus)
+//   volume fraction       dense bed, then exponential decay towards a dilute limit; denser at walls; scaled
+//                         so that the weight of solids is the case's inventory
 //   pressure              weight of solids and gas above, zero at the outlet
 //   lateral velocities    jets of the inlets at their places, and solids drifting to the walls
 //   diameter              d50, coarser in the bed, finer above

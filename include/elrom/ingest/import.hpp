@@ -23,8 +23,8 @@ struct ImportOptions {
   std::filesystem::path cases;  ///< table of boundary conditions, for formats that carry none; may be empty
   std::vector<std::string> fields;  ///< of a new store; empty: the nine standard fields
   int n_threads = 1;
-  /// Called for every case as read; throws to refuse it, gives false to leave it out. Empty: every case is
-  /// taken.
+  /// Called for every case as read; throws to refuse it, gives
+  /// false to leave it out. Empty: every case is taken.
   std::function<bool(const CfdCase&)> accept = {};
   /// Sees every case as it enters the store, on the reduced mesh. Empty: nobody looks.
   std::function<void(const field::Snapshot&, const field::Mesh&, const field::InputSchema&,
@@ -43,9 +43,8 @@ struct ImportSummary {
 
 /// Memory: one case at a time. The same files give the same bytes.
 /// @throws InputError naming file and dataset, InputError for a store of another mesh, a second case of one
-/// name or
-///         content, a boundary condition that is missing or unknown (with the nearest name), a missing field;
-///         Interrupted. The store is then as it was.
+///         name or content, a boundary condition that is missing or unknown (with the nearest name), a
+///         missing field; Interrupted. The store is then as it was.
 ImportSummary import_cases(const ImportOptions& options, Log& log, const std::stop_token& stop = {});
 
 }  // namespace elrom::ingest

@@ -12,11 +12,11 @@
 // takes the mean of its parents, and where children surround their parent evenly they average back to it.
 //
 // Limits. The value is kept between the smallest and largest value of
-//   - the cells it is made of, where x lies in the hull of their centres (a linear field is never touched
-//   there);
+//   - the cells it is made of, where x lies in the hull of their centres (a linear field is
+//     never touched there);
 //   - all cells, where x lies only in the hull of all centres;
-//   - the cells it is made of, where x lies outside (the outer half cells at walls): extrapolation gives no
-//   new extremes.
+//   - the cells it is made of, where x lies outside (the outer half cells at walls): extrapolation gives
+//     no new extremes.
 // So positive fields stay positive, and no value leaves the range of its source.
 //
 // Non-goals: conservation over partly overlapping cells, moving meshes.

@@ -26,13 +26,13 @@ struct CsvTable {
 /// Largest text that the readers of tables and of case files take; anything larger is no such file.
 inline constexpr std::size_t most_text_bytes = std::size_t{64} << 20;
 
-/// @throws InputError for a row with a cell too many or too few, an open quote, a binary file, no heading
-/// line
+/// @throws InputError for a row with a cell too many or too
+/// few, an open quote, a binary file, no heading line
 [[nodiscard]] CsvTable parse_csv(std::string_view text, std::string where);
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& path);
 
-/// The text of a small file, without a byte order mark. @throws InputError when it is larger than
-/// most_text_bytes
+/// The text of a small file, without a byte order mark. @throws
+/// InputError when it is larger than most_text_bytes
 [[nodiscard]] std::string read_small_text(const std::filesystem::path& path);
 
 /// `cell` as the writer puts it: quoted when it must be.

@@ -40,8 +40,8 @@ struct Hdf5Storage {
   [[nodiscard]] static Hdf5Storage packed(const Shape& shape, int level = 4);
 };
 
-/// A whole dataset as one chunk the way the file keeps it: shuffled and deflated. For
-/// Hdf5Group::write_packed.
+/// A whole dataset as one chunk the way the file keeps it:
+/// shuffled and deflated. For Hdf5Group::write_packed.
 [[nodiscard]] std::vector<std::uint8_t> pack_chunk(std::span<const std::byte> values, std::size_t value_size);
 
 /// Owner of one HDF5 identifier; closes it by its kind.

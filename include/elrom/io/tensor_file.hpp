@@ -72,9 +72,9 @@ enum class Verify { never, on_use };
 class TensorFile {
  public:
   TensorFile() = default;
-  /// Maps `path`; checks the whole header (no duplicate names, overlaps, holes, overflow; header <= 4 MiB and 16,384 tensors)
-  /// and its digest, but reads no tensor. @throws InputError naming the file, what was found and what was
-  /// expected
+  /// Maps `path`; checks the whole header (no duplicate names, overlaps, holes, overflow;
+  /// header <= 4 MiB and 16,384 tensors) and its digest, but reads no tensor. @throws
+  /// InputError naming the file, what was found and what was expected
   [[nodiscard]] static TensorFile open(const std::filesystem::path& path, Verify verify = Verify::never);
 
   [[nodiscard]] bool has(std::string_view name) const { return tensors_.contains(std::string(name)); }

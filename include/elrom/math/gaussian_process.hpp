@@ -2,8 +2,8 @@
 // Gaussian-process regression with one covariance function shared by all targets (Rasmussen & Williams 2006,
 // chapters 2 and 5): a length scale for every input (ARD), signal and noise variance.
 //
-// Non-goals: standardisation (callers give inputs and targets of unit size and zero mean), sparse
-// approximations.
+// Non-goals: standardisation (callers give inputs and targets of
+// unit size and zero mean), sparse approximations.
 
 #include <Eigen/Core>
 #include <vector>

@@ -8,8 +8,8 @@
 
 namespace elrom::math {
 
-/// A column that does not vary (to 1e-12 of its size) gets scale 1: it becomes zero instead of noise or
-/// infinity.
+/// A column that does not vary (to 1e-12 of its size) gets
+/// scale 1: it becomes zero instead of noise or infinity.
 class Standardiser {
  public:
   Standardiser() = default;

@@ -29,8 +29,8 @@ class RunningMoments {
 /// Sum with an error that grows with log n (pairwise).
 [[nodiscard]] double sum(std::span<const double> values);
 
-/// Linear interpolation between order statistics (type 7 of Hyndman & Fan 1996), p in [0, 1]; NaN for no
-/// values.
+/// Linear interpolation between order statistics (type 7 of
+/// Hyndman & Fan 1996), p in [0, 1]; NaN for no values.
 [[nodiscard]] double quantile(std::vector<double> values, double p);
 [[nodiscard]] double median(std::vector<double> values);
 /// Median of absolute deviations from the median, times 1.4826: the standard deviation of a normal sample.

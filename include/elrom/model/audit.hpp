@@ -26,8 +26,8 @@
 
 namespace elrom::model {
 
-/// Where gas enters: all mass-flow inputs whose names match `inputs` (shell style) enter between these
-/// heights.
+/// Where gas enters: all mass-flow inputs whose names match
+/// `inputs` (shell style) enter between these heights.
 struct GasInlet {
   std::string inputs;
   double z_low_m = 0, z_high_m = 0;
@@ -46,8 +46,8 @@ struct AuditSettings {
 /// Openings of the shipped furnace: grid at the bottom, inlets on the walls up to 7.12 m, outlet from 41.3 m.
 [[nodiscard]] AuditSettings shipped_furnace_audit();
 
-/// One case's fields, borrowed: SI, field by field in the order of `fields`, (fields.size() *
-/// mesh.n_cells()).
+/// One case's fields, borrowed: SI, field by field in the
+/// order of `fields`, (fields.size() * mesh.n_cells()).
 struct CaseView {
   const field::Mesh& mesh;
   const field::InputSchema& schema;
@@ -116,10 +116,9 @@ struct ConservationChange {
 /// and, in every plane with a balance, the gas flow equals the inlets' below. "Little" is sum V (change /
 /// scale)^2: the correction is scale^2 times one multiplier per constraint, held inside the bounds of the
 /// volume fraction.
-/// @param scale expected error of each value, same layout as values (e.g. conformal half-widths); empty: the
-/// volume
-///        fraction itself, and 1 m/s. @throws NumericalError when no fraction below the packing limit holds
-///        the inventory
+/// @param scale expected error of each value, same layout as values (e.g. conformal
+///        half-widths); empty: the volume fraction itself, and 1 m/s. @throws
+///        NumericalError when no fraction below the packing limit holds the inventory
 ConservationChange conserve(const CaseView& view, std::span<float> values, std::span<const float> scale = {},
                             const AuditSettings& settings = shipped_furnace_audit());
 

@@ -59,8 +59,8 @@ class BandedNetworks : public FieldModel {
                Workspace& workspace) const override;
 
   void save(io::TensorFile& file, const std::string& prefix) const override;
-  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix, const Wanted& wanted);
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
+                                                        const Wanted& wanted);
   /// The same model with weights in float16.
   [[nodiscard]] BandedNetworks halved() const;
 

@@ -1,6 +1,6 @@
 #pragma once
-// Bundle `model.elrom`: everything prediction needs, in one tensor file. Layout in data/FORMATS.md (kind
-// "elrom-bundle").
+// Bundle `model.elrom`: everything prediction needs, in one tensor
+// file. Layout in data/FORMATS.md (kind "elrom-bundle").
 
 #include <filesystem>
 #include <map>

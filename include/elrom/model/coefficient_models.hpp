@@ -39,8 +39,8 @@ class LinearCoefficients final : public CoefficientModel {
 class GpCoefficients final : public CoefficientModel {
  public:
   /// @param inputs standardised training inputs, (n_cases, n_inputs)
-  /// @param processes one (shared by all targets) or one for every target, fitted on inputs and targets /
-  /// scale
+  /// @param processes one (shared by all targets) or one for
+  /// every target, fitted on inputs and targets / scale
   /// @param scale standard deviation of each coefficient, (n_coefficients)
   GpCoefficients(math::Standardiser scaler, const MatrixD& inputs,
                  const std::vector<math::GaussianProcess>& processes, const Eigen::VectorXd& scale);
@@ -61,13 +61,13 @@ class GpCoefficients final : public CoefficientModel {
 
   math::Standardiser scaler_;
   math::Covariance covariance_ = math::Covariance::matern52;
-  MatrixD inputs_;             //!< standardised, (n_cases, n_inputs)
-  MatrixD lengths_;            //!< (n_kernels, n_inputs)
-  Eigen::VectorXd signal_;     //!< signal variance, (n_kernels)
-  MatrixD weights_;            //!< K^-1 targets, times scale, (n_cases, n_coefficients)
-  Eigen::VectorXd scale_;      //!< (n_coefficients)
-  io::Tensor inverse_factor_;  //!< L^-1, f32: read only where the variance is asked for, (n_kernels, n_cases,
-                               //!< n_cases)
+  MatrixD inputs_;          //!< standardised, (n_cases, n_inputs)
+  MatrixD lengths_;         //!< (n_kernels, n_inputs)
+  Eigen::VectorXd signal_;  //!< signal variance, (n_kernels)
+  MatrixD weights_;         //!< K^-1 targets, times scale, (n_cases, n_coefficients)
+  Eigen::VectorXd scale_;   //!< (n_coefficients)
+  //! L^-1, f32: read only where the variance is asked for, (n_kernels, n_cases, n_cases)
+  io::Tensor inverse_factor_;
 };
 
 /// Radial basis functions on standardised inputs.

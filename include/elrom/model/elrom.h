@@ -44,12 +44,14 @@ ELROM_API const char* elrom_field_unit(const elrom_predictor* predictor, size_t 
 /* Cell centres [m]: xyz has n_planes * n_columns * 3 values. */
 ELROM_API int elrom_cell_centres(const elrom_predictor* predictor, double* xyz);
 /* Boundary conditions of a case in a cases file (CSV, JSON, TOML): inputs has n_inputs values. */
-ELROM_API int elrom_read_case(const elrom_predictor* predictor, const char* cases, const char* name, double* inputs);
+ELROM_API int elrom_read_case(const elrom_predictor* predictor, const char* cases, const char* name,
+                              double* inputs);
 /* All fields of one case: inputs has n_inputs values, values has n_fields * n_planes * n_columns. n_threads >= 1. */
-ELROM_API int elrom_predict(const elrom_predictor* predictor, const double* inputs, float* values, int n_threads);
+ELROM_API int elrom_predict(const elrom_predictor* predictor, const double* inputs, float* values,
+                            int n_threads);
 /* verdict: 0 inside, 1 edge, 2 outside of what was trained; the reason is cut to reason_size and ends with '\0'. */
-ELROM_API int elrom_validity(const elrom_predictor* predictor, const double* inputs, int* verdict, char* reason,
-                             size_t reason_size);
+ELROM_API int elrom_validity(const elrom_predictor* predictor, const double* inputs, int* verdict,
+                             char* reason, size_t reason_size);
 
 #ifdef __cplusplus
 }

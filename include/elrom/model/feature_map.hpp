@@ -21,8 +21,8 @@ struct LinearForm {
   [[nodiscard]] double value(std::span<const double> all_inputs) const;
 };
 
-/// One summand of a feature. Logarithms and quotients are held above `floor`, so that no input gives
-/// infinity.
+/// One summand of a feature. Logarithms and quotients are
+/// held above `floor`, so that no input gives infinity.
 struct FeatureTerm {
   enum class Kind { value, square, logarithm, quotient };
   Kind kind = Kind::value;

@@ -21,7 +21,8 @@ class Workspace {
  public:
   class Frame {
    public:
-    explicit Frame(Workspace& workspace) : workspace_(workspace), mark_block_(workspace.block_), mark_used_(workspace.used_) {}
+    explicit Frame(Workspace& workspace)
+        : workspace_(workspace), mark_block_(workspace.block_), mark_used_(workspace.used_) {}
     ~Frame() {
       workspace_.block_ = mark_block_;
       workspace_.used_ = mark_used_;
@@ -47,9 +48,9 @@ class Workspace {
 
 /// What is asked of a model.
 struct Query {
-  std::span<const double> inputs;       ///< boundary conditions, SI, (n_inputs)
-  std::span<const std::int32_t> planes; ///< planes asked for, ascending, (n_query_planes)
-  bool best_build_only = false;         ///< the best build instead of the mean of all builds
+  std::span<const double> inputs;        ///< boundary conditions, SI, (n_inputs)
+  std::span<const std::int32_t> planes;  ///< planes asked for, ascending, (n_query_planes)
+  bool best_build_only = false;          ///< the best build instead of the mean of all builds
 };
 
 /// Thread rule: const use from any number of threads, each with a Workspace of its own.
@@ -67,7 +68,8 @@ class FieldModel {
   /// Field values in SI. Results for a plane do not depend on which other planes are asked for, to the bit.
   /// @param values (planes.size() * n_columns), plane by plane
   /// @param spread standard deviation the model itself knows of (ensemble, kriging variance), same shape; may be empty
-  virtual void predict(const Query& query, std::span<float> values, std::span<float> spread, Workspace& workspace) const = 0;
+  virtual void predict(const Query& query, std::span<float> values, std::span<float> spread,
+                       Workspace& workspace) const = 0;
 
   /// Puts tensors under "<prefix>/..." and the description as JSON text under `prefix` (its "kind" names the reader).
   virtual void save(io::TensorFile& file, const std::string& prefix) const = 0;
@@ -83,7 +85,8 @@ struct Wanted {
 /// Reads what save() wrote, or a part of it that answers queries for that part and no other.
 /// @throws InputError for an unknown kind or parts that do not fit together, naming file and tensor; that the
 /// whole fits a mesh and inputs is for the caller to see
-[[nodiscard]] std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file, const std::string& prefix,
+[[nodiscard]] std::unique_ptr<FieldModel> load_field_model(const io::TensorFile& file,
+                                                           const std::string& prefix,
                                                            const Wanted& wanted = {});
 
 }  // namespace elrom::model

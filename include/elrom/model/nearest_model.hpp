@@ -28,8 +28,8 @@ class NearestModel final : public FieldModel {
   void predict(const Query& query, std::span<float> values, std::span<float> spread,
                Workspace& workspace) const override;
   void save(io::TensorFile& file, const std::string& prefix) const override;
-  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix, const Wanted& wanted);
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
+                                                        const Wanted& wanted);
 
  private:
   math::Standardiser scaler_;

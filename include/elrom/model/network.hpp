@@ -35,8 +35,8 @@ class Network {
   [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
   [[nodiscard]] Activation activation() const { return activation_; }
 
-  /// @param x (n, n_inputs) @param y (n, n_outputs). A row's result does not depend on the other rows, to the
-  /// bit.
+  /// @param x (n, n_inputs) @param y (n, n_outputs). A row's
+  /// result does not depend on the other rows, to the bit.
   void forward(const Eigen::Ref<const MatrixF>& x, Eigen::Ref<MatrixF> y, Workspace& workspace) const;
 
   /// The same for rows whose first inputs are equal (the planes of one case): their part of the first layer

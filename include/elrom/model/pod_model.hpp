@@ -18,11 +18,11 @@ class PodModel final : public FieldModel {
  public:
   /// Tensors as they lie in a bundle: all modes of a plane side by side, so a plane is one piece of the file.
   struct Parts {
-    std::string kind;     ///< as in study.toml: "linear", "pod_gp", ...
-    io::Tensor mean;      //!< SI, (n_planes, n_columns) f32
-    io::Tensor modes;     //!< (n_planes, n_modes, n_columns) f32; with a fold (n_planes, n_modes, n_orbits)
-    io::Tensor residual;  //!< SI, standard deviation of what the modes leave out, (n_planes, n_columns) f32;
-                          //!< may be empty
+    std::string kind;  ///< as in study.toml: "linear", "pod_gp", ...
+    io::Tensor mean;   //!< SI, (n_planes, n_columns) f32
+    io::Tensor modes;  //!< (n_planes, n_modes, n_columns) f32; with a fold (n_planes, n_modes, n_orbits)
+    //! SI, standard deviation of what the modes leave out, (n_planes, n_columns) f32; may be empty
+    io::Tensor residual;
     std::shared_ptr<const CoefficientModel> coefficients;
     SymmetryFold fold = {};                        ///< empty: modes are stored for every column
     std::vector<std::int32_t> class_of_mode = {};  ///< class of the fold that each mode belongs to, (n_modes)
@@ -43,8 +43,8 @@ class PodModel final : public FieldModel {
 
   /// Kinds that are stored in this form.
   [[nodiscard]] static const std::vector<std::string>& kinds();
-  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file,
-                                                        const std::string& prefix, const Wanted& wanted);
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
+                                                        const Wanted& wanted);
 
  private:
   /// out += sum over modes of weight * mode, or of weight * mode^2 for spreads. @param modes of one plane

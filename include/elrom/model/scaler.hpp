@@ -29,8 +29,8 @@ struct OutputScaler {
   MatrixF mean,
       deviation;  //!< in the transformed unit, (1 or n_planes, n_columns); deviation 0: constant in training
 
-  /// @param values transformed training values, (n_cases, n_planes * n_columns) @param per_plane one scale a
-  /// cell
+  /// @param values transformed training values, (n_cases,
+  /// n_planes * n_columns) @param per_plane one scale a cell
   [[nodiscard]] static OutputScaler fit(const MatrixF& values, std::size_t n_columns, bool per_plane);
   [[nodiscard]] Eigen::Index row(std::size_t plane) const {
     return mean.rows() == 1 ? 0 : static_cast<Eigen::Index>(plane);

@@ -15,8 +15,7 @@ namespace elrom::model {
 
 /// Covariance of two cases with standardised derived inputs z and z', m(r) = Matern 5/2:
 ///   symmetric      k = m(r) + linear * (a . a') + constant
-///   antisymmetric  k = (u . u') * (linear + m(r))           (odd in u, so a mirrored case gives the mirrored
-///   answer)
+///   antisymmetric  k = (u . u') * (linear + m(r)), odd in u: a mirrored case gives the mirrored answer
 /// with a = z * inverse_lengths, r = |a - a'|, u = z * imbalance.
 struct SmootherKernel {
   bool antisymmetric = false;

@@ -27,8 +27,8 @@ class SymmetryFold {
   [[nodiscard]] std::size_t n_orbits() const { return n_orbits_; }
   [[nodiscard]] std::size_t n_classes() const { return sign_.size() == 0 ? 0 : sign_.shape()[0]; }
 
-  /// The stored column of each orbit, out of a mode's plane. @param column (n_columns) @param stored
-  /// (n_orbits)
+  /// The stored column of each orbit, out of a mode's plane.
+  /// @param column (n_columns) @param stored (n_orbits)
   void pick(std::span<const float> column, std::span<float> stored) const;
   /// column[j] += sign(class, j) * stored[orbit(j)]. @param stored (n_orbits) @param column (n_columns)
   void add(std::size_t i_class, std::span<const float> stored, std::span<float> column) const;

@@ -1,6 +1,6 @@
 #pragma once
-// What the page draws of the fields: vertical cuts through the furnace, axial profiles and histograms of
-// errors.
+// What the page draws of the fields: vertical cuts through the
+// furnace, axial profiles and histograms of errors.
 
 #include <array>
 #include <cstdint>

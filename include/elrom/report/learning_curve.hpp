@@ -1,7 +1,7 @@
 #pragma once
-// What more cases buy: a method of the study fitted anew on nested subsets of its training cases, always
-// scored on the same held-out cases; and the source's comparison of v1 (a third of the cases) with v2 (all of
-// them).
+// What more cases buy: a method of the study fitted anew on nested subsets of
+// its training cases, always scored on the same held-out cases; and the
+// source's comparison of v1 (a third of the cases) with v2 (all of them).
 //
 // Error: mean over fields of the pooled NRMSE, whose training mean is that of *all* training cases at every
 // point, so that points differ by the model alone.

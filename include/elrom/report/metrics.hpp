@@ -3,14 +3,12 @@
 //
 // Definitions (held-out cases c, cells i, truth y, prediction p, mean m_i of the training cases):
 //   NRMSE             sqrt( sum (p - y)^2 / sum (m - y)^2 ), sums over cells and over all cases scored
-//   together;
-//                     1 = predicting the training mean in every cell, 0 = perfect
+//                     together; 1 = predicting the training mean in every cell, 0 = perfect
 //   standardised MSE  mean of ((p - y) / sigma_j)^2, sigma_j of output column j over training cases and
-//   planes (the
-//                     source's figure, its eq. 6.1); columns that do not vary are left out
+//                     planes (the source's figure, its eq. 6.1); columns that do not vary are left out
 //   RMSE              sqrt( mean (p - y)^2 ), in the field's unit
-//   R2                1 - sum (p - y)^2 / sum (y - mean y)^2, one mean for everything scored together (the
-//   parity plot's)
+//   R2                1 - sum (p - y)^2 / sum (y - mean y)^2, one mean for everything scored together
+//                     (the parity plot's)
 // Cells count alike, whatever their volume.
 //
 // Thread rule: pure functions.
@@ -60,31 +58,31 @@ struct WorstCell {
   std::size_t cell = 0;
   double truth = 0, prediction = 0;
 };
-/// The cell with the largest absolute error (the first of equals; a value that is not finite counts as
-/// largest).
+/// The cell with the largest absolute error (the first of
+/// equals; a value that is not finite counts as largest).
 [[nodiscard]] WorstCell worst_cell(std::span<const float> truth, std::span<const float> prediction);
 
 /// Share of cells with |p - y| <= half width.
 [[nodiscard]] double covered_share(std::span<const float> truth, std::span<const float> prediction,
                                    std::span<const float> half_width);
 
-/// Energy of the noise of one run: sum over cells of the unbiased variance between runs of the same boundary
-/// conditions.
+/// Energy of the noise of one run: sum over cells of the unbiased
+/// variance between runs of the same boundary conditions.
 /// @param runs (n_runs >= 2, n_cells)
 [[nodiscard]] double noise_energy(const MatrixF& runs);
 
 /// Noise expected at other loads: a power law of the load through the measured ones (least squares in
 /// logarithms; the fluctuations of a furnace grow with its velocities), their mean where loads or energies do
 /// not allow one.
-/// @param measured_loads, energies of each set of repeated runs, at least one @return energy at each of
-/// `loads`
+/// @param measured_loads, energies of each set of repeated
+/// runs, at least one @return energy at each of `loads`
 [[nodiscard]] std::vector<double> noise_at_loads(std::span<const double> measured_loads,
                                                  std::span<const double> energies,
                                                  std::span<const double> loads);
 
-/// NRMSE with the noise of the truth taken off error and departure alike: sqrt((error - noise) / (departure -
-/// noise)); 0 where no more error than noise is left, NaN where the truth departs from the mean by noise
-/// alone.
+/// NRMSE with the noise of the truth taken off error and departure alike:
+/// sqrt((error - noise) / (departure - noise)); 0 where no more error than
+/// noise is left, NaN where the truth departs from the mean by noise alone.
 /// @param noise energy in all cases summed in `sums`
 [[nodiscard]] double nrmse_without_noise(const ErrorSums& sums, double noise);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The report as one HTML file that opens offline: styles, script, drawings and data are inside; nothing is
-// fetched.
+// The report as one HTML file that opens offline: styles,
+// script, drawings and data are inside; nothing is fetched.
 
 #include <optional>
 #include <string>
@@ -20,8 +20,8 @@ struct PageExtras {
   std::vector<study::TrialStore::Search> searches;
 };
 
-/// What lies in the study's directory: learning-curve.json, cost.json, search.sqlite. Missing parts stay
-/// empty.
+/// What lies in the study's directory: learning-curve.json,
+/// cost.json, search.sqlite. Missing parts stay empty.
 [[nodiscard]] PageExtras find_extras(const StudyFiles& study);
 
 /// @param report with figures

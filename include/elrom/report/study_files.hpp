@@ -1,6 +1,6 @@
 #pragma once
-// What a trained study directory holds for a report: its store, its split, its bundles and what they took to
-// train.
+// What a trained study directory holds for a report: its store,
+// its split, its bundles and what they took to train.
 
 #include <filesystem>
 #include <map>
@@ -35,8 +35,8 @@ struct StudyFiles {
 /// Bundles of `path`: a bundle file, or a study directory's model.
 [[nodiscard]] BundleFile open_other(const std::filesystem::path& path);
 
-/// The methods that count as simple peers: nearest, linear, POD with a Gaussian process or radial basis
-/// functions.
+/// The methods that count as simple peers: nearest, linear, POD
+/// with a Gaussian process or radial basis functions.
 [[nodiscard]] bool is_simple_peer(const std::string& method);
 
 }  // namespace elrom::report

@@ -1,7 +1,7 @@
 #pragma once
-// Method "auto": per field, and per band of columns where that pays, the candidate or the blend of candidates
-// that predicts cases best that it has not seen, found by load-grouped cross-validation on training cases
-// only.
+// Method "auto": per field, and per band of columns where that pays, the
+// candidate or the blend of candidates that predicts cases best that it has not
+// seen, found by load-grouped cross-validation on training cases only.
 
 #include <memory>
 #include <span>
@@ -40,8 +40,8 @@ struct AutoFit {
   double nrmse_by_band = 0;  ///< the same, had each band weights of its own; NaN: all columns in one band
 };
 
-/// A candidate that throws NumericalError loses and is told to the log; when all do, the first error is
-/// thrown.
+/// A candidate that throws NumericalError loses and is told to
+/// the log; when all do, the first error is thrown.
 /// @param cases rows to learn from; at least two
 [[nodiscard]] AutoFit fit_auto(const FieldData& data, std::span<const std::size_t> cases,
                                std::span<const Method* const> candidates, const AutoOptions& options,

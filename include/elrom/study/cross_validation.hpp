@@ -17,11 +17,12 @@ namespace elrom::study {
 [[nodiscard]] Folds load_grouped_folds(std::span<const double> loads, std::span<const std::size_t> cases,
                                        std::size_t n_folds, std::size_t blocks_per_fold = 2);
 
-/// Folds that take every n-th case in the order of loads: what is left out lies among what is left, as a new
-/// case lies among the cases of a study. Cases of equal inputs (repeated runs) stay together, unless all are
-/// equal.
+/// Folds that take every n-th case in the order of loads: what is left out lies
+/// among what is left, as a new case lies among the cases of a study. Cases of
+/// equal inputs (repeated runs) stay together, unless all are equal.
 /// @param rows that take part @param n_folds, the return value and errors as above
-[[nodiscard]] Folds spread_folds(const CaseSet& cases, std::span<const std::size_t> rows, std::size_t n_folds);
+[[nodiscard]] Folds spread_folds(const CaseSet& cases, std::span<const std::size_t> rows,
+                                 std::size_t n_folds);
 
 /// All rows of `folds` but those of fold `left_out`, ascending.
 [[nodiscard]] std::vector<std::size_t> rows_without(const Folds& folds, std::size_t left_out);
@@ -30,8 +31,8 @@ namespace elrom::study {
 void predict_case(const model::FieldModel& model, std::span<const double> inputs, std::size_t n_planes,
                   std::span<float> values, model::Workspace& workspace);
 
-/// Fits `method` once a fold; `parallel` runs folds side by side (for methods whose fit() may run on several
-/// threads).
+/// Fits `method` once a fold; `parallel` runs folds side by side
+/// (for methods whose fit() may run on several threads).
 [[nodiscard]] MatrixF cross_predict_by_fitting(const Method& method, const FieldData& data,
                                                const Folds& folds, const FitContext& context, bool parallel);
 

@@ -1,12 +1,12 @@
 #pragma once
-// Method "kernel": one kernel smoother a field on derived inputs, for the symmetric and each antisymmetric
-// part of the field on its own. Hyperparameters, and how far every wavelength and every cell is trusted,
-// minimise the leave-one-case-out error in closed form (Allen 1974; Craven & Wahba 1979 for linear
-// smoothers).
+// Method "kernel": one kernel smoother a field on derived inputs, for the symmetric and
+// each antisymmetric part of the field on its own. Hyperparameters, and how far every
+// wavelength and every cell is trusted, minimise the leave-one-case-out error in closed
+// form (Allen 1974; Craven & Wahba 1979 for linear smoothers).
 //
-// Why it does better than POD with a process a mode on few cases: mirror images are used exactly instead of
-// by augmentation; all modes share one covariance with few, physical inputs; noise that no input explains is
-// shrunk.
+// Why it does better than POD with a process a mode on few cases: mirror images are
+// used exactly instead of by augmentation; all modes share one covariance with few,
+// physical inputs; noise that no input explains is shrunk.
 
 #include <memory>
 

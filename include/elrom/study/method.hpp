@@ -46,8 +46,8 @@ struct FitContext {
   [[nodiscard]] int n_trainings() const { return workers == nullptr ? n_threads : workers->n_units(); }
 };
 
-/// Groups of case rows that leave the training set together in cross-validation (neighbouring loads do not
-/// leak).
+/// Groups of case rows that leave the training set together in
+/// cross-validation (neighbouring loads do not leak).
 using Folds = std::vector<std::vector<std::size_t>>;
 
 /// Thread rule: const use from one thread at a time; n_threads of the context is used inside.

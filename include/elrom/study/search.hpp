@@ -1,11 +1,11 @@
 #pragma once
 // Search for a submodel's hyperparameters with NLopt's derivative-free algorithms over the unit cube.
 //
-// A point is decoded to hyperparameters (logarithmic bins for rates, units and batch sizes, equal bins for
-// layers); decoded points are memoised and only distinct ones count as trials. Hopeless trials are pruned by
-// asynchronous successive halving (Li et al. 2020: eta 3, rungs at 1/9 and 1/3 of the longest training, never
-// the first 8 trials). The best trials are built again with other seeds, because noise flatters the
-// incumbent.
+// A point is decoded to hyperparameters (logarithmic bins for rates, units and batch sizes,
+// equal bins for layers); decoded points are memoised and only distinct ones count as trials.
+// Hopeless trials are pruned by asynchronous successive halving (Li et al. 2020: eta 3, rungs
+// at 1/9 and 1/3 of the longest training, never the first 8 trials). The best trials are
+// built again with other seeds, because noise flatters the incumbent.
 
 #include <functional>
 #include <span>

@@ -114,8 +114,8 @@ struct Settings {
 [[nodiscard]] Settings read_settings(const std::filesystem::path& file,
                                      const std::vector<std::string>& overrides = {});
 
-/// The whole settings as TOML that reads back to the same settings; `section` ("screen") limits it to one
-/// table.
+/// The whole settings as TOML that reads back to the same
+/// settings; `section` ("screen") limits it to one table.
 [[nodiscard]] std::string to_toml(const Settings& settings, std::string_view section = {});
 
 /// Key, default and meaning of every setting, for --help.

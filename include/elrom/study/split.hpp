@@ -22,8 +22,8 @@ enum class Part : std::uint8_t { train, validation, test };
 struct HeldOut {
   std::vector<std::size_t> building, held_out;
 };
-/// @param patterns names or shell patterns. @throws UsageError when fewer than two cases are left to build
-/// with
+/// @param patterns names or shell patterns. @throws UsageError
+/// when fewer than two cases are left to build with
 [[nodiscard]] HeldOut hold_out(const std::vector<std::string>& names,
                                const std::vector<std::string>& patterns);
 

@@ -3,10 +3,13 @@
 // the digest of its inputs (stage_cache.hpp), so a second run, or one after a crash, redoes only what is not
 // valid any more.
 //
-//   STUDY/resolved.toml     settings as used        STUDY/split.json     cases by part
-//   STUDY/model.elrom       the model               STUDY/peers/*.elrom  peers on the same cases, each a
-//   bundle STUDY/stages/*          kept results            STUDY/search.sqlite  every trial STUDY/timing.json
-//   seconds a stage
+//   STUDY/resolved.toml   settings as used
+//   STUDY/split.json      cases by part
+//   STUDY/model.elrom     the model
+//   STUDY/peers/*.elrom   peers on the same cases, each a bundle
+//   STUDY/stages/*        kept results
+//   STUDY/search.sqlite   every trial
+//   STUDY/timing.json     seconds a stage
 
 #include <filesystem>
 #include <map>

@@ -27,8 +27,8 @@ struct Trial {
 /// Thread rule: every member from any thread.
 class TrialStore {
  public:
-  /// Creates the file when it is not there. @throws InputError when it is no trial store or of a newer
-  /// version
+  /// Creates the file when it is not there. @throws InputError
+  /// when it is no trial store or of a newer version
   explicit TrialStore(const std::filesystem::path& path);
   ~TrialStore();
   TrialStore(const TrialStore&) = delete;
