@@ -38,17 +38,27 @@ function(elrom_precompile target)
   target_compile_options(${target} PRIVATE -fpch-preprocess)  # lets ccache see through the precompiled header
 endfunction()
 
-# elrom_library(name SOURCES ... LINKS ... PRIVATE_LINKS ...) -> target elrom-<name>, alias elrom::<name>, installed with component <name>.
+# elrom_library(name [SOURCES ...] LINKS ... PRIVATE_LINKS ...) -> target elrom-<name>, alias elrom::<name>, installed with
+# component <name>. Its sources: those of the folder <name>, where none are given.
 function(elrom_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  if(NOT ARG_SOURCES)
+    file(GLOB ARG_SOURCES CONFIGURE_DEPENDS ${name}/*.cpp)
+  endif()
   add_library(elrom-${name} STATIC ${ARG_SOURCES})
   add_library(elrom::${name} ALIAS elrom-${name})
   set_target_properties(elrom-${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(elrom-${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
   target_link_libraries(elrom-${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
   elrom_compile_options(elrom-${name})
-  if(NOT name STREQUAL torch)
-    elrom_precompile(elrom-${name} ${ELROM_COMMON_HEADERS})
+  # One header parsed for all, core's; LibTorch's has its own.
+  if(name STREQUAL torch)
+    elrom_precompile(elrom-torch <torch/torch.h>)
+  elseif(name STREQUAL core)
+    elrom_precompile(elrom-core ${ELROM_COMMON_HEADERS})
+  else()
+    target_precompile_headers(elrom-${name} REUSE_FROM elrom-core)
+    target_compile_options(elrom-${name} PRIVATE -fpch-preprocess)
   endif()
   install(TARGETS elrom-${name} EXPORT elrom-${name}-targets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
   install(EXPORT elrom-${name}-targets NAMESPACE elrom:: DESTINATION lib/cmake/elrom)
@@ -77,18 +87,23 @@ function(elrom_test_options target)
   target_compile_definitions(${target} PRIVATE ELROM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ELROM_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
 endfunction()
 
-# elrom_test(path/to/file_test.cpp [LIBTORCH] LINKS ...) -> one executable with one CTest entry a test case.
+# elrom_tests(component [LIBTORCH] [TIMEOUT s] LINKS ...) -> one program of all *_test.cpp of this folder, and one CTest entry
+# a test case, <component>/<Suite>.<Case>. The component's internal headers can be included.
 # Slow or statistical work belongs into tests/benchmark, which CTest does not run.
-function(elrom_test source)
-  cmake_parse_arguments(ARG "LIBTORCH" "TIMEOUT" "LINKS" ${ARGN})
-  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/tests OUTPUT_VARIABLE folder)
-  string(REGEX REPLACE "_test\\.cpp$" "" stem ${source})
-  string(REPLACE "/" "-" name "test-${folder}-${stem}")
-  add_executable(${name} ${source})
+function(elrom_tests component)
+  cmake_parse_arguments(ARG "LIBTORCH" "TIMEOUT;INTERNAL" "SOURCES;LINKS;PROPERTIES" ${ARGN})
+  set(name test-${component})
+  if(NOT ARG_SOURCES)
+    file(GLOB ARG_SOURCES CONFIGURE_DEPENDS *_test.cpp)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} GTest::gmock GTest::gtest_main)
   elrom_test_options(${name})
-  # Nearly all tests share one precompiled header, and so one set of compile options. LIBTORCH: the test includes it, and is
-  # compiled as elrom::torch is, whose header it takes.
+  if(ARG_INTERNAL)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/${ARG_INTERNAL})
+  endif()
+  # Nearly all tests share one precompiled header, and so one set of compile options. LIBTORCH: the tests include it, and are
+  # compiled as elrom::torch is, whose header they take.
   if(ARG_LIBTORCH)
     target_precompile_headers(${name} REUSE_FROM elrom-torch)
     target_compile_options(${name} PRIVATE -fPIC -fpch-preprocess)
@@ -100,6 +115,5 @@ function(elrom_test source)
     set(ARG_TIMEOUT 120)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  add_test(NAME ${folder}/${stem} COMMAND ${name})
-  set_tests_properties(${folder}/${stem} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+  gtest_discover_tests(${name} TEST_PREFIX ${component}/ DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT} ${ARG_PROPERTIES})
 endfunction()

@@ -15,13 +15,13 @@
 #include <numeric>
 
 #include "elrom/base/text.hpp"
+#include "elrom/methods/cross_validation.hpp"
+#include "elrom/methods/kernel_method.hpp"
+#include "elrom/methods/networks_method.hpp"
+#include "elrom/methods/peers.hpp"
+#include "elrom/methods/pod_mlp.hpp"
 #include "elrom/model/composite_models.hpp"
-#include "elrom/study/cross_validation.hpp"
-#include "elrom/study/kernel_method.hpp"
-#include "elrom/study/networks_method.hpp"
-#include "elrom/study/peers.hpp"
-#include "elrom/study/pod_mlp.hpp"
-#include "elrom/study/split.hpp"
+#include "elrom/networks/split.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/torch/trainer.hpp"
 #include "support/benchmark.hpp"
@@ -43,7 +43,7 @@ struct Options : benchmark::Arguments {
 /// One row of the table: a way to read an answer out of a variant's trained models.
 struct Reading {
   std::string name, what;
-  std::function<Model(const Model&, const study::FieldData&)> read = [](const Model& model, const auto&) {
+  std::function<Model(const Model&, const field::FieldData&)> read = [](const Model& model, const auto&) {
     return model;
   };
 };
@@ -51,7 +51,7 @@ struct Reading {
 /// Models that are trained once and read in one or several ways.
 struct Variant {
   std::vector<Reading> readings;
-  std::function<std::unique_ptr<study::Method>(const std::string& field)> make;
+  std::function<std::unique_ptr<methods::Method>(const std::string& field)> make;
   std::string only = "";  ///< the one field it changes anything for
 };
 
@@ -59,14 +59,14 @@ struct Outcome {
   double cross = 0, held_out = 0, seconds = 0;
 };
 
-Model average_of(const Model& model, const study::FieldData& data) {
+Model average_of(const Model& model, const field::FieldData& data) {
   const auto& set = *data.cases;
   return std::make_shared<model::MirrorModel>(
       model, field::symmetry_group(set.mirrors, set.schema.size(), set.mesh.n_cells()), data.info.parity,
       set.mesh.n_planes);
 }
 
-Model best_build_of(const Model& model, const study::FieldData&) {
+Model best_build_of(const Model& model, const field::FieldData&) {
   auto parts = dynamic_cast<const model::BandedNetworks&>(*model).parts();
   parts.combination = model::Combination::best;
   return std::make_shared<model::BandedNetworks>(std::move(parts));
@@ -147,12 +147,12 @@ class Workbench {
   /// Networks of fixed hyperparameters, those that searches end near, on all columns together: nothing but
   /// the setting differs between rows.
   [[nodiscard]] auto networks(std::vector<std::string> changes,
-                              std::function<void(study::Hyperparameters&)> tune = {}) const {
-    return [this, changes, tune](const std::string& field) -> std::unique_ptr<study::Method> {
-      auto method = std::make_unique<study::NetworksMethod>(settings(changes), trainer_);
-      study::NetworkPlan plan;
+                              std::function<void(networks::Hyperparameters&)> tune = {}) const {
+    return [this, changes, tune](const std::string& field) -> std::unique_ptr<methods::Method> {
+      auto method = std::make_unique<methods::NetworksMethod>(settings(changes), trainer_);
+      methods::NetworkPlan plan;
       plan.bands = {{.name = "all", .columns = columns_, .mask = {}}};
-      study::Hyperparameters h{.learning_rate = 2.5e-3, .n_layers = 2, .n_units = 64, .batch_size = 64};
+      networks::Hyperparameters h{.learning_rate = 2.5e-3, .n_layers = 2, .n_units = 64, .batch_size = 64};
       if (tune) tune(h);
       plan.hyperparameters = {h};
       method->keep_plan(field, plan);
@@ -160,19 +160,19 @@ class Workbench {
     };
   }
 
-  [[nodiscard]] auto pod(const std::function<void(study::PodMlpOptions&)>& change = {}) const {
+  [[nodiscard]] auto pod(const std::function<void(methods::PodMlpOptions&)>& change = {}) const {
     return [this, change](const std::string&) {
-      study::PodMlpOptions options;
+      methods::PodMlpOptions options;
       if (options_.small) options.budget.max_epochs = 60;
       if (change) change(options);
-      return study::make_pod_mlp(trainer_, options);
+      return methods::make_pod_mlp(trainer_, options);
     };
   }
 
   /// Screened by a network a column, banded, searched, bare plane index, no mirror images.
   [[nodiscard]] auto source() const {
-    return [this](const std::string& field) -> std::unique_ptr<study::Method> {
-      auto method = std::make_unique<study::NetworksMethod>(
+    return [this](const std::string& field) -> std::unique_ptr<methods::Method> {
+      auto method = std::make_unique<methods::NetworksMethod>(
           settings({"networks.plane_encoding=\"index\"", "fit.combine=\"best\"",
                     fmt::format("screen.max_epochs={}", options_.small ? 6 : 60)}),
           trainer_);
@@ -182,7 +182,7 @@ class Workbench {
   }
 
   [[nodiscard]] std::vector<Variant> variants() const {
-    using H = study::Hyperparameters;
+    using H = networks::Hyperparameters;
     const auto decay = [](H& h) { h.weight_decay = 0.1; };
     const auto log = networks({"networks.transform={solid_volume_fraction=\"log\"}"});
     const auto asinh = networks({"networks.transform={solid_volume_fraction=\"asinh\"}"});
@@ -222,8 +222,8 @@ class Workbench {
         {{{"source",
            fmt::format("the source's method as written, {} trials a submodel", options_.source_trials)}},
          source()},
-        {{{"kernel", "kernel smoother"}}, [](const std::string&) { return study::make_kernel_method(); }},
-        {{{"pod_rbf", "POD + RBF"}}, [](const std::string&) { return study::make_peer("pod_rbf"); }},
+        {{{"kernel", "kernel smoother"}}, [](const std::string&) { return methods::make_kernel_method(); }},
+        {{{"pod_rbf", "POD + RBF"}}, [](const std::string&) { return methods::make_peer("pod_rbf"); }},
     };
   }
 
@@ -251,9 +251,9 @@ class Workbench {
     for (std::size_t r = 0; r < outcomes.size(); ++r)
       outcomes[r].held_out =
           std::sqrt(squared_error(*variant.readings[r].read(whole, data_), judged_) / departure(judged_));
-    const auto folds = study::load_grouped_folds(cases_.loads, building_, n_folds);
+    const auto folds = methods::load_grouped_folds(cases_.loads, building_, n_folds);
     for (std::size_t k = 0; k < folds.size(); ++k) {
-      const Model model = method->fit(data_, study::rows_without(folds, k), context());
+      const Model model = method->fit(data_, methods::rows_without(folds, k), context());
       for (std::size_t r = 0; r < squares.size(); ++r)
         squares[r] += squared_error(*variant.readings[r].read(model, data_), folds[k]);
     }
@@ -282,7 +282,7 @@ class Workbench {
             {"held_out", mean.held_out}, {"train_seconds", mean.seconds}, {"fields", fields}};
   }
 
-  [[nodiscard]] study::FitContext context() const {
+  [[nodiscard]] methods::FitContext context() const {
     return {.seed = base::Seed(1), .n_threads = options_.threads, .stop = base::interrupt_token()};
   }
 
@@ -293,8 +293,9 @@ class Workbench {
       const auto row = static_cast<Eigen::Index>(rows[i]);
       Eigen::RowVectorXf values(data_.values.cols());
       model::Workspace workspace;
-      study::predict_case(model, {cases_.inputs.row(row).data(), cases_.schema.size()}, cases_.mesh.n_planes,
-                          {values.data(), static_cast<std::size_t>(values.size())}, workspace);
+      methods::predict_case(model, {cases_.inputs.row(row).data(), cases_.schema.size()},
+                            cases_.mesh.n_planes, {values.data(), static_cast<std::size_t>(values.size())},
+                            workspace);
       squares[i] = (data_.values.row(row) - values).cast<double>().squaredNorm();
     });
     return std::accumulate(squares.begin(), squares.end(), 0.0);
@@ -310,14 +311,14 @@ class Workbench {
   }
 
   const Options& options_;
-  std::shared_ptr<const study::Trainer> trainer_;
+  std::shared_ptr<const networks::Trainer> trainer_;
   field::SnapshotStore store_;
-  study::CaseSet cases_;    // training cases, then the held-out ones
+  field::CaseSet cases_;    // training cases, then the held-out ones
   Rows rows_;               // of the store, in the order of cases_
   Rows building_, judged_;  // of cases_
   std::vector<field::FieldInfo> fields_;
   std::vector<std::int32_t> columns_;
-  study::FieldData data_;  // the field at work
+  field::FieldData data_;  // the field at work
   std::map<std::string, Outcome> reference_;
 };
 

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "../../train/study/records.hpp"
 #include "elrom/base/log.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/math/statistics.hpp"
+#include "elrom/networks/records.hpp"
 #include "elrom/study/study.hpp"
 #include "sequential_screening.hpp"
 #include "support/benchmark.hpp"
@@ -36,11 +36,11 @@ std::filesystem::path generated_store(const benchmark::Arguments& arguments,
   return store;
 }
 
-study::ScreeningData records_of(const study::FieldData& data, const study::Settings& settings) {
+networks::ScreeningData records_of(const field::FieldData& data, const study::Settings& settings) {
   const auto all = math::all_rows(data.cases->n_cases());
   const auto part =
-      study::split_records(data.cases->loads, data.cases->mesh.n_planes, settings.split, base::Seed(1));
-  return study::make_records(data, all, part, {}).records;
+      networks::split_records(data.cases->loads, data.cases->mesh.n_planes, settings.split, base::Seed(1));
+  return networks::make_records(data, all, part, {}).records;
 }
 
 // Columns spread over the bands, so that every band's edge is tried.
@@ -52,40 +52,41 @@ std::vector<std::uint32_t> sample_columns(std::size_t n_columns, std::size_t n) 
   return columns;
 }
 
-void compare_sequential(const study::ScreeningData& records, const study::Settings& settings, base::Seed seed,
-                        const study::ScreeningResult& batched, std::size_t n_sample, Totals& totals) {
+void compare_sequential(const networks::ScreeningData& records, const study::Settings& settings,
+                        base::Seed seed, const networks::ScreeningResult& batched, std::size_t n_sample,
+                        Totals& totals) {
   const auto columns = sample_columns(static_cast<std::size_t>(records.targets.cols()), n_sample);
   if (columns.empty()) return;
   const auto sequential = benchmark::screen_sequentially(records, settings.screen, seed, columns);
   const auto ours = batched.column_error(), theirs = sequential.column_error();
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    totals.sequential_equal += study::band_of(ours[columns[i]], settings.bands.edges) ==
-                               study::band_of(theirs[i], settings.bands.edges);
+    totals.sequential_equal += networks::band_of(ours[columns[i]], settings.bands.edges) ==
+                               networks::band_of(theirs[i], settings.bands.edges);
   }
   totals.sequential_columns += static_cast<double>(columns.size());
   totals.sequential_seconds += sequential.seconds;
   totals.sequential_networks += columns.size() * static_cast<std::size_t>(settings.screen.builds);
 }
 
-void measure_field(const study::FieldData& data, const study::Settings& settings,
+void measure_field(const field::FieldData& data, const study::Settings& settings,
                    const benchmark::Arguments& arguments, std::size_t n_sample, Log& log, Totals& totals) {
   const auto records = records_of(data, settings);
   const auto seed = base::Seed(1).derive(data.info.name);
-  const study::ScreeningContext context{.seed = seed,
-                                        .n_threads = arguments.threads,
-                                        .log = &log,
-                                        .stop = {},
-                                        .task = "screen " + data.info.name};
+  const networks::ScreeningContext context{.seed = seed,
+                                           .n_threads = arguments.threads,
+                                           .log = &log,
+                                           .stop = {},
+                                           .task = "screen " + data.info.name};
   const Stopwatch batched_watch;
-  const auto batched = study::screen_networks(records, settings.screen, context);
+  const auto batched = networks::screen_networks(records, settings.screen, context);
   totals.seconds += batched_watch.seconds();
   const Stopwatch fast_watch;
-  const auto fast = study::screen_fast(records, settings.screen, context);
+  const auto fast = networks::screen_fast(records, settings.screen, context);
   totals.fast_seconds += fast_watch.seconds();
   compare_sequential(records, settings, seed, batched, n_sample, totals);
   const auto n_columns = static_cast<std::size_t>(records.targets.cols());
   totals.fast_equal +=
-      study::equal_bands(batched, fast, settings.bands.edges) * static_cast<double>(n_columns);
+      networks::equal_bands(batched, fast, settings.bands.edges) * static_cast<double>(n_columns);
   totals.columns += n_columns;
   totals.networks += n_columns * static_cast<std::size_t>(settings.screen.builds);
   totals.epochs += batched.mean_epochs * static_cast<double>(n_columns);
@@ -104,7 +105,7 @@ Json measure(const benchmark::Arguments& arguments) {
   const auto cases = study::study_cases(store, settings, rows.building, *log);
   Totals totals;
   for (const auto& info : store.fields()) {
-    const study::FieldData data{&cases, info, store.read(info.name, rows.building)};
+    const field::FieldData data{&cases, info, store.read(info.name, rows.building)};
     measure_field(data, settings, arguments, arguments.small ? 2 : 5, *log, totals);
   }
   const double batched_each = totals.seconds / static_cast<double>(totals.networks);

@@ -2,14 +2,14 @@
 // they end with (mean over the seeds that confirm the winner) and how long they take. The default of
 // search.algorithm comes from here.
 
-#include "elrom/study/search.hpp"
+#include "elrom/networks/search.hpp"
 
 #include <fmt/format.h>
 
-#include "../../train/study/records.hpp"
 #include "elrom/base/log.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/math/statistics.hpp"
+#include "elrom/networks/records.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/torch/trainer.hpp"
 #include "support/benchmark.hpp"
@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 struct Problem {
   std::string name;
-  study::TrainingProblem records;
+  networks::TrainingProblem records;
 };
 
 std::filesystem::path shipped_store(const std::filesystem::path& folder) {
@@ -45,16 +45,16 @@ std::vector<Problem> submodels(const field::SnapshotStore& store, const study::S
   for (const auto& record : store.cases()) names.push_back(record.inputs.name);
   const auto rows = study::hold_out(names, settings.split.held_out);
   const auto cases = study::study_cases(store, settings, rows.building, log);
-  const auto part = study::split_records(cases.loads, cases.mesh.n_planes, settings.split, base::Seed(1));
+  const auto part = networks::split_records(cases.loads, cases.mesh.n_planes, settings.split, base::Seed(1));
   std::vector<Problem> problems;
   for (std::size_t f = 0; f < store.fields().size(); f += 3) {
-    const study::FieldData data{&cases, store.fields()[f], store.read(store.fields()[f].name, rows.building)};
-    const auto set = study::make_records(data, math::all_rows(cases.n_cases()), part,
-                                         {.encoding = model::PlaneEncodingKind::fourier});
-    const auto screening = study::screen_fast(set.records, settings.screen, {});
+    const field::FieldData data{&cases, store.fields()[f], store.read(store.fields()[f].name, rows.building)};
+    const auto set = networks::make_records(data, math::all_rows(cases.n_cases()), part,
+                                            {.encoding = model::PlaneEncodingKind::fourier});
+    const auto screening = networks::screen_fast(set.records, settings.screen, {});
     const double middle = math::median(screening.column_error());
-    for (const auto& band : study::make_bands(screening, {.scope = "field", .edges = {middle}})) {
-      problems.push_back({data.info.name + ", " + band.name, study::make_problem(set.records, band)});
+    for (const auto& band : networks::make_bands(screening, {.scope = "field", .edges = {middle}})) {
+      problems.push_back({data.info.name + ", " + band.name, networks::make_problem(set.records, band)});
     }
     if (small) break;
   }
@@ -62,23 +62,23 @@ std::vector<Problem> submodels(const field::SnapshotStore& store, const study::S
 }
 
 Json measure_algorithm(const std::string& algorithm, const std::vector<Problem>& problems,
-                       study::SearchSettings settings, const study::Trainer& trainer,
+                       networks::SearchSettings settings, const networks::Trainer& trainer,
                        const benchmark::Arguments& arguments, Log& log) {
   settings.algorithm = algorithm;
-  std::vector<study::SearchResult> results(problems.size());
-  const study::TrainingBudget budget{settings.max_epochs, settings.patience};
+  std::vector<networks::SearchResult> results(problems.size());
+  const networks::TrainingBudget budget{settings.max_epochs, settings.patience};
   const Stopwatch watch;
   base::parallel_for(problems.size(), arguments.threads, [&](std::size_t i, int) {
-    const auto evaluate = [&](const study::Hyperparameters& h, base::Seed seed,
-                              study::TrainingMonitor* monitor) {
+    const auto evaluate = [&](const networks::Hyperparameters& h, base::Seed seed,
+                              networks::TrainingMonitor* monitor) {
       return trainer.train(problems[i].records, h, budget, seed, monitor, {});
     };
-    results[i] = study::search(evaluate, settings, study::SearchSpace(settings),
-                               {.name = algorithm + ", " + problems[i].name,
-                                .digest = {},
-                                .seed = base::Seed(1),
-                                .log = &log,
-                                .stop = {}});
+    results[i] = networks::search(evaluate, settings, networks::SearchSpace(settings),
+                                  {.name = algorithm + ", " + problems[i].name,
+                                   .digest = {},
+                                   .seed = base::Seed(1),
+                                   .log = &log,
+                                   .stop = {}});
   });
   const double seconds = watch.seconds();
   Json json{{"trials", settings.trials},

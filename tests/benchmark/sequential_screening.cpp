@@ -29,7 +29,7 @@ struct Records {
         targets(all_targets.index_select(0, index_of(rows))) {}
 };
 
-nn::Sequential make_network(const study::ColumnNetwork& start) {
+nn::Sequential make_network(const networks::ColumnNetwork& start) {
   const auto n_units = start.hidden.rows(), n_inputs = start.hidden.cols() - 1;
   nn::Linear hidden(n_inputs, n_units), output(n_units, 1);
   const ::torch::NoGradGuard no_gradient;
@@ -48,21 +48,21 @@ double error_of(nn::Sequential& network, const Tensor& inputs, const Tensor& tar
 
 class Loop {
  public:
-  Loop(const study::ScreeningData& data, const study::ScreenSettings& settings, base::Seed seed)
+  Loop(const networks::ScreeningData& data, const networks::ScreenSettings& settings, base::Seed seed)
       : settings_(settings),
         seed_(seed),
-        train_rows_(data.rows(study::Part::train)),
+        train_rows_(data.rows(networks::Part::train)),
         inputs_(to_torch(data.inputs)),
         targets_(to_torch(data.targets)),
         train_(inputs_, targets_, train_rows_),
-        validation_(inputs_, targets_, data.rows(study::Part::validation)),
+        validation_(inputs_, targets_, data.rows(networks::Part::validation)),
         test_(inputs_, targets_, data.judging_rows()) {}
 
   /// @return error on the test records, epochs
   std::pair<double, int> build(std::size_t i_build, std::uint32_t column) {
-    auto network =
-        make_network(study::initial_network(seed_, i_build, column, static_cast<std::size_t>(inputs_.size(1)),
-                                            static_cast<std::size_t>(settings_.n_units)));
+    auto network = make_network(networks::initial_network(seed_, i_build, column,
+                                                          static_cast<std::size_t>(inputs_.size(1)),
+                                                          static_cast<std::size_t>(settings_.n_units)));
     const auto column_of = [&](const Records& records) {
       return records.targets.narrow(1, column, 1).contiguous();
     };
@@ -87,7 +87,7 @@ class Loop {
  private:
   void run_epoch(nn::Sequential& network, ::torch::optim::Adam& adam, const Tensor& targets,
                  std::size_t i_build, std::size_t epoch) const {
-    const Tensor order = index_of(study::epoch_order(seed_, i_build, epoch, train_rows_));
+    const Tensor order = index_of(networks::epoch_order(seed_, i_build, epoch, train_rows_));
     for (std::int64_t first = 0; first < order.size(0); first += settings_.batch_size) {
       const Tensor rows =
           order.slice(0, first, std::min<std::int64_t>(first + settings_.batch_size, order.size(0)));
@@ -110,7 +110,7 @@ class Loop {
     for (std::size_t i = 0; i < from.size(); ++i) Tensor(parameters[i]).copy_(from[i]);
   }
 
-  const study::ScreenSettings& settings_;
+  const networks::ScreenSettings& settings_;
   base::Seed seed_;
   std::vector<std::uint32_t> train_rows_;
   Tensor inputs_, targets_;
@@ -124,8 +124,8 @@ std::vector<double> SequentialScreening::column_error() const {
   return {mean.data(), mean.data() + mean.size()};
 }
 
-SequentialScreening screen_sequentially(const study::ScreeningData& data,
-                                        const study::ScreenSettings& settings, base::Seed seed,
+SequentialScreening screen_sequentially(const networks::ScreeningData& data,
+                                        const networks::ScreenSettings& settings, base::Seed seed,
                                         std::span<const std::uint32_t> columns) {
   const auto begin = std::chrono::steady_clock::now();
   Loop loop(data, settings, seed);
@@ -135,7 +135,7 @@ SequentialScreening screen_sequentially(const study::ScreeningData& data,
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const auto [error, epochs] = loop.build(static_cast<std::size_t>(b), columns[c]);
       result.build_error(b, static_cast<Eigen::Index>(c)) =
-          std::isfinite(error) ? error : study::largest_error;
+          std::isfinite(error) ? error : networks::largest_error;
       result.mean_epochs += epochs / static_cast<double>(result.build_error.size());
     }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "elrom/study/screening.hpp"
+#include "elrom/networks/screening.hpp"
 
 namespace elrom::benchmark {
 
@@ -21,8 +21,9 @@ struct SequentialScreening {
 /// Starts every network at the weights, and visits the records in the order, of the batched screening of the
 /// same seed.
 /// @param columns a sample of the columns of `data`
-[[nodiscard]] SequentialScreening screen_sequentially(const study::ScreeningData& data,
-                                                      const study::ScreenSettings& settings, base::Seed seed,
+[[nodiscard]] SequentialScreening screen_sequentially(const networks::ScreeningData& data,
+                                                      const networks::ScreenSettings& settings,
+                                                      base::Seed seed,
                                                       std::span<const std::uint32_t> columns);
 
 }  // namespace elrom::benchmark

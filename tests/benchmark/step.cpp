@@ -89,11 +89,11 @@ std::pair<double, double> seconds_of(const First& first, const Second& second, d
 
 nlohmann::json measure(const Shape& shape, Sgemm sgemm, double budget_s) {
   const elrom::torch::OneFastThread guard;
-  study::TrainingProblem problem;
+  networks::TrainingProblem problem;
   const int n_records = 16 * shape.batch;
   problem.train_inputs = MatrixF::Random(n_records, shape.n_inputs);
   problem.train_targets = MatrixF::Random(n_records, shape.n_outputs);
-  const study::Hyperparameters hyperparameters{
+  const networks::Hyperparameters hyperparameters{
       .learning_rate = 1e-4, .n_layers = shape.n_layers, .n_units = shape.n_units, .batch_size = shape.batch};
   elrom::torch::Training training(problem, hyperparameters, base::Seed(1), {});
   std::vector<std::int64_t> order(static_cast<std::size_t>(n_records));

@@ -1,10 +1,10 @@
 #include <filesystem>
 
-#include "../../data/check.hpp"
-#include "../../data/unit_mistakes.hpp"
+#include "../../data/ingest/unit_mistakes.hpp"
 #include "../stability/stages.hpp"
 #include "campaign.hpp"
 #include "elrom/ingest/cfd_case.hpp"
+#include "elrom/ingest/check.hpp"
 
 namespace elrom::faults {
 namespace {

@@ -8,14 +8,14 @@
 #include "../../src/io/tensor_header.hpp"
 #include "../support/random_network.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/methods/kernel_method.hpp"
+#include "elrom/methods/peers.hpp"
 #include "elrom/model/banded_networks.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/model/composite_models.hpp"
 #include "elrom/model/mlp_coefficients.hpp"
 #include "elrom/model/pod_model.hpp"
 #include "elrom/model/predictor.hpp"
-#include "elrom/study/kernel_method.hpp"
-#include "elrom/study/peers.hpp"
 #include "memory_file.hpp"
 
 namespace elrom::faults {
@@ -26,13 +26,13 @@ using Model = std::shared_ptr<const model::FieldModel>;
 
 /// Four cells, three inputs, five cases: a bundle of a few
 /// kilobytes, so that a fuzzer tries thousands a second.
-study::FieldData small_data(study::CaseSet& cases, const field::FieldInfo& info) {
+field::FieldData small_data(field::CaseSet& cases, const field::FieldInfo& info) {
   constexpr Eigen::Index n_cases = 5, n_cells = 4;
   cases.mesh = field::make_furnace_mesh({}, 2, 1, 2);
   cases.schema = field::InputSchema(
       {{"air_left", "kg/s", "t/h"}, {"air_right", "kg/s", "kg/s"}, {"gas_temperature", "K", "degC"}});
   base::Random random(base::Seed(3).derive("small data"));
-  study::FieldData data{&cases, info, MatrixF(n_cases, n_cells)};
+  field::FieldData data{&cases, info, MatrixF(n_cases, n_cells)};
   cases.inputs.resize(n_cases, 3);
   for (Eigen::Index i = 0; i < n_cases; ++i) {
     const double load = 0.4 + 0.15 * static_cast<double>(i);
@@ -45,7 +45,7 @@ study::FieldData small_data(study::CaseSet& cases, const field::FieldInfo& info)
   return data;
 }
 
-Model networks(const study::CaseSet& cases, bool masked) {
+Model networks(const field::CaseSet& cases, bool masked) {
   model::BandedNetworks::Parts parts;
   parts.n_columns = 2;
   parts.inputs = model::InputScaler::fit(cases.inputs);
@@ -68,7 +68,7 @@ Model networks(const study::CaseSet& cases, bool masked) {
   return std::make_shared<model::BandedNetworks>(std::move(parts));
 }
 
-Model pod_mlp(const study::CaseSet& cases) {
+Model pod_mlp(const field::CaseSet& cases) {
   model::MlpCoefficients::Parts parts{
       .inputs = model::InputScaler::fit(cases.inputs),
       .scale = Eigen::VectorXd::Ones(2),
@@ -81,15 +81,15 @@ Model pod_mlp(const study::CaseSet& cases) {
 }
 
 /// Every kind of model that a bundle may hold, by name.
-std::map<std::string, Model> models_of(study::CaseSet& cases, const study::FieldData& data) {
+std::map<std::string, Model> models_of(field::CaseSet& cases, const field::FieldData& data) {
   std::vector<std::size_t> rows(cases.n_cases());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   std::map<std::string, Model> models;
-  for (const auto& name : study::peer_names()) models[name] = study::make_peer(name)->fit(data, rows, {});
+  for (const auto& name : methods::peer_names()) models[name] = methods::make_peer(name)->fit(data, rows, {});
   const field::MirrorDeclaration left_right{
       .name = "left-right", .axis = 'x', .swap = {{"*_left", "*_right"}}};
   cases.mirrors = {field::resolve(left_right, cases.schema, cases.mesh)};
-  models["kernel"] = study::make_kernel_method()->fit(data, rows, {});
+  models["kernel"] = methods::make_kernel_method()->fit(data, rows, {});
   models["networks"] = networks(cases, false);
   models["networks_masked"] = networks(cases, true);
   models["pod_mlp"] = pod_mlp(cases);
@@ -199,7 +199,7 @@ void change_tensor(io::TensorFile& file, Dice& dice) {
 }  // namespace
 
 std::map<std::string, model::Bundle> small_bundles() {
-  auto cases = std::make_unique<study::CaseSet>();
+  auto cases = std::make_unique<field::CaseSet>();
   const auto data = small_data(*cases, field::field_info("gas_velocity_z"));
   std::map<std::string, model::Bundle> bundles;
   for (auto& [name, one] : models_of(*cases, data)) {

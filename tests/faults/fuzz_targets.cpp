@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../data/foam_file.hpp"
+#include "../../data/ingest/foam_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/ingest/cfd_case.hpp"

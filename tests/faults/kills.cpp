@@ -5,7 +5,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/io/hdf5.hpp"
 #include "elrom/io/tensor_file.hpp"
-#include "elrom/study/search.hpp"
+#include "elrom/networks/search.hpp"
 #include "process.hpp"
 
 namespace elrom::faults {
@@ -92,9 +92,9 @@ void kill_predictions(const Workshop& shop, std::size_t n, base::Random& random,
 /// What every trial of a study's searches was worth.
 std::map<std::string, double> trials_of(const fs::path& study) {
   std::map<std::string, double> values;
-  for (const auto& search : study::TrialStore(study / "search.sqlite").searches()) {
+  for (const auto& search : networks::TrialStore(study / "search.sqlite").searches()) {
     for (const auto& trial : search.trials) {
-      values[search.digest + " " + study::SearchSpace::key(trial.hyperparameters) + " " +
+      values[search.digest + " " + networks::SearchSpace::key(trial.hyperparameters) + " " +
              std::to_string(trial.i_seed)] = trial.value;
     }
   }

@@ -1,4 +1,4 @@
-#include "../../src/io/tensor_header.hpp"
+#include "tensor_header.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -17,14 +17,15 @@ namespace {
 
 constexpr int n_epochs = 10;
 
-class CountingTrainer final : public study::Trainer {
+class CountingTrainer final : public networks::Trainer {
  public:
   [[nodiscard]] std::string name() const override { return "counting"; }
-  [[nodiscard]] study::TrainingResult train(const study::TrainingProblem&, const study::Hyperparameters&,
-                                            const study::TrainingBudget&, base::Seed seed,
-                                            study::TrainingMonitor* monitor, const std::stop_token&,
-                                            const std::filesystem::path&) const override {
-    study::TrainingResult result;
+  [[nodiscard]] networks::TrainingResult train(const networks::TrainingProblem&,
+                                               const networks::Hyperparameters&,
+                                               const networks::TrainingBudget&, base::Seed seed,
+                                               networks::TrainingMonitor* monitor, const std::stop_token&,
+                                               const std::filesystem::path&) const override {
+    networks::TrainingResult result;
     result.network = test::random_network({2, 3, 1}, model::Activation::relu, seed);
     while (!result.pruned && result.epochs < n_epochs) {
       result.pruned = !monitor->keep_going(++result.epochs, 1.0);
@@ -33,7 +34,7 @@ class CountingTrainer final : public study::Trainer {
   }
 };
 
-class Watch final : public study::TrainingMonitor {
+class Watch final : public networks::TrainingMonitor {
  public:
   explicit Watch(std::function<void(int)> at_epoch) : at_epoch_(std::move(at_epoch)) {}
   bool keep_going(int epoch, double) override {
@@ -45,22 +46,22 @@ class Watch final : public study::TrainingMonitor {
   std::function<void(int)> at_epoch_;
 };
 
-study::TrainingProblem problem(Eigen::Index n_records) {
-  study::TrainingProblem problem;
+networks::TrainingProblem problem(Eigen::Index n_records) {
+  networks::TrainingProblem problem;
   problem.train_inputs = problem.validation_inputs =
       MatrixF::Constant(n_records, 2, static_cast<float>(n_records));
   problem.train_targets = problem.validation_targets = MatrixF::Zero(n_records, 1);
   return problem;
 }
 
-int train_through(const study::Trainer& trainer, Eigen::Index n_records,
+int train_through(const networks::Trainer& trainer, Eigen::Index n_records,
                   const std::function<void(int)>& at_epoch) {
   Watch watch(at_epoch);
   return trainer.train(problem(n_records), {}, {}, base::Seed(1), &watch, {}, {}).epochs;
 }
 
 /// Two trainings: the first is held at this rank, so that `at_rank_1` finds only the other rank free.
-void beside_a_training_here(const study::Trainer& trainer, const std::function<void()>& at_rank_1) {
+void beside_a_training_here(const networks::Trainer& trainer, const std::function<void()>& at_rank_1) {
   std::promise<void> begun, done;
   std::jthread here([&] {
     (void)train_through(trainer, 3, [&](int epoch) {

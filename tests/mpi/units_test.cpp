@@ -13,7 +13,7 @@ namespace elrom::mpi {
 namespace {
 
 TEST(Units, ATrainingArrivesWithItsProblem) {
-  study::TrainingProblem problem;
+  networks::TrainingProblem problem;
   problem.train_inputs = MatrixF::Random(7, 3);
   problem.train_targets = MatrixF::Random(7, 2);
   problem.validation_inputs = MatrixF::Random(2, 3);
@@ -44,7 +44,7 @@ TEST(Units, ATrainingArrivesWithItsProblem) {
 }
 
 TEST(Units, TheDigestTellsProblemsApart) {
-  study::TrainingProblem problem;
+  networks::TrainingProblem problem;
   problem.train_inputs = MatrixF::Ones(2, 3);
   auto other = problem;
   other.train_inputs = MatrixF::Ones(3, 2);
@@ -55,27 +55,29 @@ TEST(Units, TheDigestTellsProblemsApart) {
 }
 
 TEST(Units, ACrewGivesTheSameOutcomesFromDataThatTravelled) {
-  study::ScreeningData data;
+  networks::ScreeningData data;
   data.inputs = MatrixF::Random(40, 4);
   data.targets = MatrixF::Random(40, 18);
   data.n_planes = 4;
   for (int r = 0; r < 40; ++r) {
     data.plane.push_back(r % 4);
     data.case_of.push_back(r / 4);
-    data.part.push_back(r < 24 ? study::Part::train : r < 32 ? study::Part::validation : study::Part::test);
+    data.part.push_back(r < 24   ? networks::Part::train
+                        : r < 32 ? networks::Part::validation
+                                 : networks::Part::test);
   }
-  study::ScreenSettings settings;
+  networks::ScreenSettings settings;
   settings.max_epochs = 4;
   const base::Seed seed(3);
   auto message = to_message(CrewUnit{1, {0, 3, 17}});
   add_data(message, data, settings, seed);
 
-  const auto there = screening_of(message);
+  const auto there = screening_job_of(message);
   const auto unit = crew_unit_of(message);
-  const auto outcomes = outcomes_of(to_message(
-      make_crew_trainer(there->data, there->settings, there->seed)(unit.i_build, unit.columns, {})));
+  const auto outcomes = outcomes_of(to_message(networks::make_crew_trainer(
+      there->data, there->settings, there->seed)(unit.i_build, unit.columns, {})));
 
-  const auto here = make_crew_trainer(data, settings, seed)(1, unit.columns, {});
+  const auto here = networks::make_crew_trainer(data, settings, seed)(1, unit.columns, {});
   ASSERT_EQ(outcomes.size(), 3U);
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     EXPECT_EQ(outcomes[i].plane_error, here[i].plane_error);
@@ -85,7 +87,7 @@ TEST(Units, ACrewGivesTheSameOutcomesFromDataThatTravelled) {
 }
 
 TEST(Units, AResultKeepsEveryFlagAndDigit) {
-  study::TrainingResult result;
+  networks::TrainingResult result;
   result.network = test::random_network({3, 5, 2}, model::Activation::relu, base::Seed(1));
   result.validation_mse = 0.1 + 0.2;
   result.epochs = 17;

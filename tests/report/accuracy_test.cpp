@@ -184,7 +184,7 @@ TEST_F(Accuracy, PageEscapesNamesFromOutside) {
 }
 
 TEST_F(Accuracy, PageShowsTheSearch) {
-  study::TrialStore::Search search{.digest = "d", .name = "pressure, 0 to 0.1", .trials = {}};
+  networks::TrialStore::Search search{.digest = "d", .name = "pressure, 0 to 0.1", .trials = {}};
   for (int i = 0; i < 6; ++i)
     search.trials.push_back(
         {.hyperparameters = {.n_units = 16 << i}, .value = 0.5 - 0.05 * i, .epochs = 10, .rungs = {}});

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "../../train/report/base64.hpp"
-#include "../../train/report/colour_map.hpp"
-#include "../../train/report/svg.hpp"
+#include "base64.hpp"
+#include "colour_map.hpp"
 #include "elrom/report/figures.hpp"
+#include "svg.hpp"
 
 namespace elrom::report {
 namespace {

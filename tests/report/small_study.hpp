@@ -10,10 +10,10 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/random.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/methods/cross_validation.hpp"
+#include "elrom/methods/peers.hpp"
 #include "elrom/model/bundle.hpp"
-#include "elrom/study/cross_validation.hpp"
-#include "elrom/study/peers.hpp"
-#include "elrom/study/split.hpp"
+#include "elrom/study/held_out.hpp"
 
 namespace elrom::report::testing {
 
@@ -86,7 +86,7 @@ class SmallStudy {
       (training ? split.train : split.held_out).push_back(name);
     }
     study::write_split(folder_ / "split.json", split);
-    study::CaseSet cases{store.mesh(), store.schema(), {}, {}, store.inputs(rows), {}};
+    field::CaseSet cases{store.mesh(), store.schema(), {}, {}, store.inputs(rows), {}};
     for (const auto row : rows) {
       cases.names.push_back(store.cases()[row].inputs.name);
       cases.loads.push_back(store.cases()[row].inputs.load);
@@ -103,7 +103,7 @@ class SmallStudy {
       {"name": "networks", "nrmse": null, "weight": 0, "failure": "it diverged"}]}})";
   }
 
-  static void write_bundle(const field::SnapshotStore& store, const study::CaseSet& cases,
+  static void write_bundle(const field::SnapshotStore& store, const field::CaseSet& cases,
                            const std::vector<std::size_t>& rows, const std::string& method,
                            const std::filesystem::path& path, bool with_uncertainty) {
     model::Bundle bundle;
@@ -114,11 +114,11 @@ class SmallStudy {
     std::vector<std::size_t> all(rows.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
     for (const auto& info : fields()) {
-      const study::FieldData data{&cases, info, store.read(info.name, rows)};
-      bundle.models[info.name] = study::make_peer(method)->fit(data, all, {});
+      const field::FieldData data{&cases, info, store.read(info.name, rows)};
+      bundle.models[info.name] = methods::make_peer(method)->fit(data, all, {});
       if (!with_uncertainty) continue;
-      const auto folds = study::load_grouped_folds(cases.loads, all, 4);
-      const MatrixF residuals = data.values - study::make_peer(method)->cross_predict(data, folds, {});
+      const auto folds = methods::load_grouped_folds(cases.loads, all, 4);
+      const MatrixF residuals = data.values - methods::make_peer(method)->cross_predict(data, folds, {});
       bundle.uncertainty[info.name] = std::make_shared<model::Uncertainty>(residuals, cases.mesh.n_columns);
     }
     bundle.write(path);

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "elrom/study/method.hpp"
+#include "elrom/methods/method.hpp"
 
 namespace elrom::stability {
 
 struct HardData {
   std::string name;         ///< "constant_columns"
   std::string description;  ///< one line for the table
-  study::CaseSet cases;
+  field::CaseSet cases;
   std::vector<field::FieldInfo> fields;
   std::vector<MatrixF> values;   //!< of each field, SI, (n_cases, n_cells)
   bool must_be_refused = false;  ///< holds cells that are not finite: no store may take it

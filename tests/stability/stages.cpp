@@ -4,18 +4,18 @@
 #include <functional>
 #include <numeric>
 
-#include "../../data/check.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/field/symmetry.hpp"
+#include "elrom/ingest/check.hpp"
+#include "elrom/methods/kernel_method.hpp"
+#include "elrom/methods/networks_method.hpp"
+#include "elrom/methods/peers.hpp"
+#include "elrom/methods/pod_mlp.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/model/composite_models.hpp"
 #include "elrom/model/predictor.hpp"
-#include "elrom/study/kernel_method.hpp"
-#include "elrom/study/networks_method.hpp"
-#include "elrom/study/peers.hpp"
-#include "elrom/study/pod_mlp.hpp"
 #include "support/recording_log.hpp"
 #if ELROM_HAS_TORCH
 #include "elrom/torch/trainer.hpp"
@@ -105,11 +105,11 @@ study::Settings tiny_settings() {
 std::string screen(const HardData& data, const std::string& method) {
   auto settings = tiny_settings();
   settings.screen.method = method;
-  const study::NetworksMethod networks(settings, nullptr);
+  const methods::NetworksMethod networks(settings, nullptr);
   std::vector<std::size_t> rows(data.cases.n_cases());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   for (std::size_t f = 0; f < data.fields.size(); ++f) {
-    const study::FieldData field{&data.cases, data.fields[f], data.values[f]};
+    const field::FieldData field{&data.cases, data.fields[f], data.values[f]};
     const auto result = networks.screen_field(field, rows, {});
     if (!result.error.allFinite() || !result.build_error.allFinite()) return "errors that are not finite";
   }
@@ -117,45 +117,46 @@ std::string screen(const HardData& data, const std::string& method) {
 }
 
 using Fit =
-    std::function<std::unique_ptr<model::FieldModel>(const study::FieldData&, const study::FitContext&)>;
+    std::function<std::unique_ptr<model::FieldModel>(const field::FieldData&, const methods::FitContext&)>;
 
-std::unique_ptr<model::FieldModel> fit_with(const study::Method& method, const study::FieldData& data,
-                                            const study::FitContext& context) {
+std::unique_ptr<model::FieldModel> fit_with(const methods::Method& method, const field::FieldData& data,
+                                            const methods::FitContext& context) {
   std::vector<std::size_t> rows(data.cases->n_cases());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   return method.fit(data, rows, context);
 }
 
-Fit fit_by(std::shared_ptr<const study::Method> method) {
-  return [method = std::move(method)](const study::FieldData& data, const study::FitContext& context) {
+Fit fit_by(std::shared_ptr<const methods::Method> method) {
+  return [method = std::move(method)](const field::FieldData& data, const methods::FitContext& context) {
     return fit_with(*method, data, context);
   };
 }
 
-std::unique_ptr<model::FieldModel> fit_blend(const study::FieldData& data, const study::FitContext& context) {
+std::unique_ptr<model::FieldModel> fit_blend(const field::FieldData& data,
+                                             const methods::FitContext& context) {
   std::vector<model::BlendModel::Part> parts;
   for (const std::string name : {"linear", "pod_rbf"})
-    parts.push_back({{0.5}, fit_with(*study::make_peer(name), data, context)});
+    parts.push_back({{0.5}, fit_with(*methods::make_peer(name), data, context)});
   return std::make_unique<model::BlendModel>(std::move(parts));
 }
 
-std::unique_ptr<model::FieldModel> fit_mirror(const study::FieldData& data,
-                                              const study::FitContext& context) {
+std::unique_ptr<model::FieldModel> fit_mirror(const field::FieldData& data,
+                                              const methods::FitContext& context) {
   const auto& cases = *data.cases;
   return std::make_unique<model::MirrorModel>(
-      fit_with(*study::make_peer("pod_gp"), data, context),
+      fit_with(*methods::make_peer("pod_gp"), data, context),
       field::symmetry_group(cases.mirrors, cases.schema.size(), cases.mesh.n_cells()), data.info.parity,
       cases.mesh.n_planes);
 }
 
 #if ELROM_HAS_TORCH
-std::shared_ptr<const study::Method> networks(const study::Settings& settings) {
-  return std::make_shared<study::NetworksMethod>(settings, torch::make_torch_trainer());
+std::shared_ptr<const methods::Method> networks(const study::Settings& settings) {
+  return std::make_shared<methods::NetworksMethod>(settings, torch::make_torch_trainer());
 }
 
 /// Rates of which some diverge: those trials lose, and that is told.
-std::unique_ptr<model::FieldModel> fit_diverging_search(const study::FieldData& data,
-                                                        const study::FitContext& context) {
+std::unique_ptr<model::FieldModel> fit_diverging_search(const field::FieldData& data,
+                                                        const methods::FitContext& context) {
   auto settings = tiny_settings();
   settings.search.learning_rate = {1e-20, 1e20};
   settings.search.trials = 6;
@@ -169,8 +170,8 @@ std::unique_ptr<model::FieldModel> fit_diverging_search(const study::FieldData& 
 }
 
 /// Rates that leave nothing to win with.
-std::unique_ptr<model::FieldModel> fit_diverging(const study::FieldData& data,
-                                                 const study::FitContext& context) {
+std::unique_ptr<model::FieldModel> fit_diverging(const field::FieldData& data,
+                                                 const methods::FitContext& context) {
   auto settings = tiny_settings();
   settings.search.learning_rate = {1e29, 1e30};
   (void)fit_with(*networks(settings), data, context);
@@ -186,8 +187,8 @@ struct NamedFit {
 /// Every method, and every kind of model that is made of others.
 std::vector<NamedFit> all_fits() {
   std::vector<NamedFit> fits;
-  for (const auto& name : study::peer_names()) fits.push_back({name, fit_by(study::make_peer(name))});
-  fits.push_back({"kernel", fit_by(study::make_kernel_method())});
+  for (const auto& name : methods::peer_names()) fits.push_back({name, fit_by(methods::make_peer(name))});
+  fits.push_back({"kernel", fit_by(methods::make_kernel_method())});
   fits.push_back({"blend", fit_blend});
   fits.push_back({"mirror", fit_mirror});
 #if ELROM_HAS_TORCH
@@ -197,8 +198,8 @@ std::vector<NamedFit> all_fits() {
   averaged.bands.scope = "plane";
   fits.push_back({"networks_averaged", fit_by(networks(averaged))});
   fits.push_back(
-      {"pod_mlp", fit_by(study::make_pod_mlp(torch::make_torch_trainer(),
-                                             {.builds = 2, .budget = {20, 10}, .mirrors = true}))});
+      {"pod_mlp", fit_by(methods::make_pod_mlp(torch::make_torch_trainer(),
+                                               {.builds = 2, .budget = {20, 10}, .mirrors = true}))});
   fits.push_back({"diverging_search", fit_diverging_search});
   fits.push_back({"diverging_fit", fit_diverging});
 #endif
@@ -232,7 +233,7 @@ std::string fit_and_predict(const HardData& data, const std::string& stage, cons
   bundle.guard = model::Guard(data.cases.schema, data.cases.inputs, data.cases.names, data.cases.loads);
   model::Selection selection;
   for (std::size_t f = 0; f < data.fields.size(); ++f) {
-    const study::FieldData field{&data.cases, data.fields[f], data.values[f]};
+    const field::FieldData field{&data.cases, data.fields[f], data.values[f]};
     bundle.models[data.fields[f].name] = fit(field, {});
     if (data.cases.n_cases() < 3) continue;  // too few for an interval
     selection.interval_level = 0.5;

@@ -1,4 +1,4 @@
-#include "../../train/study/field_stage.hpp"
+#include "field_stage.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,15 +11,15 @@ namespace elrom::study {
 namespace {
 
 TEST(FieldStage, IntervalsAreThoseOfTheBlendThatAnswers) {
-  const CaseSet cases = test::toy_cases(10);
-  const FieldData data = test::toy_field(cases);
+  const field::CaseSet cases = test::toy_cases(10);
+  const field::FieldData data = test::toy_field(cases);
   const MatrixF left_errors = 1.1F * test::lopsided(data, "a", 0.1F),
                 right_errors = test::lopsided(data, "b", 10);
   const test::FakeMethod left("left", left_errors), right("right", right_errors);
 
   const FieldStage stage = fit_field(
       {.name = "auto", .candidates = {&left, &right}, .data = data, .band_edges = {0.3}, .n_folds = 4},
-      StageCache(), {});
+      io::StageCache(), {});
 
   std::vector<std::int32_t> planes(cases.mesh.n_planes);
   std::iota(planes.begin(), planes.end(), 0);

@@ -10,7 +10,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/model/predictor.hpp"
-#include "elrom/study/split.hpp"
+#include "elrom/study/held_out.hpp"
 #include "study_fixture.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -18,18 +18,20 @@ namespace elrom::study {
 namespace {
 
 // "Trains" a network without hidden layers: the targets' mean as bias. Counts its calls; can be killed.
-class MeanTrainer final : public Trainer {
+class MeanTrainer final : public networks::Trainer {
  public:
   [[nodiscard]] std::string name() const override { return "mean"; }
-  [[nodiscard]] TrainingResult train(const TrainingProblem& problem, const Hyperparameters& hyperparameters,
-                                     const TrainingBudget&, base::Seed, TrainingMonitor*,
-                                     const std::stop_token&, const std::filesystem::path&) const override {
+  [[nodiscard]] networks::TrainingResult train(const networks::TrainingProblem& problem,
+                                               const networks::Hyperparameters& hyperparameters,
+                                               const networks::TrainingBudget&, base::Seed,
+                                               networks::TrainingMonitor*, const std::stop_token&,
+                                               const std::filesystem::path&) const override {
     if (++calls == kill_at) throw Interrupted("killed");
     const auto n_in = problem.train_inputs.cols(), n_out = problem.train_targets.cols();
     const Eigen::RowVectorXf mean = problem.train_targets.colwise().mean();
     const float slope = static_cast<float>(hyperparameters.learning_rate);
     const std::vector<float> bias(mean.data(), mean.data() + n_out);
-    TrainingResult result;
+    networks::TrainingResult result;
     result.network = model::Network({{io::Tensor::copy(MatrixF(MatrixF::Constant(n_out, n_in, slope))),
                                       io::Tensor::copy(std::span(bias), {bias.size()})}},
                                     model::Activation::relu);

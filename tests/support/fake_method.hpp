@@ -6,23 +6,23 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/random.hpp"
-#include "elrom/study/method.hpp"
-#include "elrom/study/peers.hpp"
+#include "elrom/methods/method.hpp"
+#include "elrom/methods/peers.hpp"
 
 namespace elrom::test {
 
 /// Predicts the truth plus a given error pattern; fits to the nearest peer, which nobody asks.
-class FakeMethod final : public study::Method {
+class FakeMethod final : public methods::Method {
  public:
   FakeMethod(std::string name, MatrixF errors) : name_(std::move(name)), errors_(std::move(errors)) {}
   [[nodiscard]] std::string name() const override { return name_; }
-  [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const study::FieldData& data,
+  [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
-                                                       const study::FitContext& context) const override {
-    return study::make_peer("nearest")->fit(data, cases, context);
+                                                       const methods::FitContext& context) const override {
+    return methods::make_peer("nearest")->fit(data, cases, context);
   }
-  [[nodiscard]] MatrixF cross_predict(const study::FieldData& data, const study::Folds&,
-                                      const study::FitContext&) const override {
+  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const methods::Folds&,
+                                      const methods::FitContext&) const override {
     if (errors_.size() == 0) throw NumericalError("it diverged");
     return data.values - errors_;
   }
@@ -33,7 +33,7 @@ class FakeMethod final : public study::Method {
 };
 
 /// Independent normal errors of this size in every case and cell.
-inline MatrixF noise(const study::FieldData& data, std::string_view name, double size) {
+inline MatrixF noise(const field::FieldData& data, std::string_view name, double size) {
   base::Random random(base::Seed(41).derive(name));
   MatrixF errors(data.values.rows(), data.values.cols());
   for (Eigen::Index i = 0; i < errors.size(); ++i)
@@ -43,7 +43,7 @@ inline MatrixF noise(const study::FieldData& data, std::string_view name, double
 
 /// The same of size 0.1, with the given factor in the left
 /// half of every plane, and its inverse in the right half.
-inline MatrixF lopsided(const study::FieldData& data, std::string_view name, float left) {
+inline MatrixF lopsided(const field::FieldData& data, std::string_view name, float left) {
   MatrixF errors = noise(data, name, 0.1);
   const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);
   for (Eigen::Index c = 0; c < errors.cols(); ++c)

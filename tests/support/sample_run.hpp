@@ -11,19 +11,19 @@ namespace elrom::test {
 /// Two fields on 2 x 2 columns and 3 planes; value of field f in cell c = 100 (f + 1) + c.
 struct SampleRun {
   field::Mesh mesh = field::make_furnace_mesh({}, 2, 2, 3);
-  predict::Run run;
+  fields::Run run;
   field::CaseInputs inputs{"case_a", 0.64, {1.5, 2.5}};
   model::Assessment assessment;
   std::vector<float> values;
 
   explicit SampleRun(const std::vector<std::int32_t>& planes = {},
-                     const std::optional<predict::Box>& box = {}) {
+                     const std::optional<fields::Box>& box = {}) {
     run.fields = {field::field_info("pressure"), field::field_info("gas_velocity_z")};
     run.fields[0].unit = "Pa";
     run.schema = field::InputSchema({{"air", "kg/s", "t/h"}, {"fuel", "kg/s", "kg/s"}});
     const auto part = planes.empty() ? mesh : mesh_part(mesh, planes);
-    run.cells = predict::choose_cells(part, planes, box);
-    run.geometry = predict::geometry_of(part, run.cells);
+    run.cells = fields::choose_cells(part, planes, box);
+    run.geometry = fields::geometry_of(part, run.cells);
     run.bundle_digest = std::string(64, 'b');
     run.mesh_digest = mesh.digest();
     run.bundle_program = "ELROM";
@@ -35,7 +35,7 @@ struct SampleRun {
         values.push_back(static_cast<float>(100 * (f + 1)) + static_cast<float>(cell));
     }
   }
-  [[nodiscard]] predict::Prediction prediction() const {
+  [[nodiscard]] fields::Prediction prediction() const {
     return {.inputs = &inputs, .assessment = &assessment, .values = values, .half_width = {}};
   }
 };

@@ -6,13 +6,13 @@
 #include <string>
 
 #include "elrom/base/random.hpp"
-#include "elrom/study/method.hpp"
+#include "elrom/methods/method.hpp"
 
 namespace elrom::test {
 
 /// 4 x 6 columns in 8 planes; air in four corners, a diameter, a temperature and a load that drives the air.
-inline study::CaseSet toy_cases(std::size_t n_cases, bool mirrors = true) {
-  study::CaseSet cases{.mesh = field::make_furnace_mesh({}, 4, 6, 8)};
+inline field::CaseSet toy_cases(std::size_t n_cases, bool mirrors = true) {
+  field::CaseSet cases{.mesh = field::make_furnace_mesh({}, 4, 6, 8)};
   cases.schema = field::InputSchema({{"air_front_left", "kg/s", "kg/s"},
                                      {"air_front_right", "kg/s", "kg/s"},
                                      {"air_rear_left", "kg/s", "kg/s"},
@@ -50,8 +50,8 @@ inline double toy_velocity(std::span<const double> q, double x, double y, double
 }
 
 /// @param noise standard deviation added to every cell
-inline study::FieldData toy_field(const study::CaseSet& cases, double noise = 0) {
-  study::FieldData data{&cases, field::field_info("gas_velocity_z"), {}};
+inline field::FieldData toy_field(const field::CaseSet& cases, double noise = 0) {
+  field::FieldData data{&cases, field::field_info("gas_velocity_z"), {}};
   base::Random random(base::Seed(22).derive("toy noise"));
   data.values.resize(cases.inputs.rows(), static_cast<Eigen::Index>(cases.mesh.n_cells()));
   for (Eigen::Index i = 0; i < data.values.rows(); ++i) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
-#include "../../train/study/lane_network.hpp"
+#include "../../train/networks/lane_network.hpp"
 #include "sequential_screening.hpp"
 #include "support/random_network.hpp"
 
@@ -53,8 +53,8 @@ TEST(BatchedScreening, GradientEqualsAutograd) {
   }
 }
 
-ScreeningData noisy_columns() {
-  ScreeningData data;
+networks::ScreeningData noisy_columns() {
+  networks::ScreeningData data;
   const Eigen::Index n_cases = 40, n_planes = 4, n_columns = 12;
   data.n_planes = n_planes;
   data.inputs.resize(n_cases * n_planes, 4);
@@ -71,14 +71,16 @@ ScreeningData noisy_columns() {
     }
     data.plane.push_back(static_cast<std::int32_t>(r % n_planes));
     data.case_of.push_back(static_cast<std::int32_t>(i));
-    data.part.push_back(i % 10 < 7 ? Part::train : i % 10 < 9 ? Part::validation : Part::test);
+    data.part.push_back(i % 10 < 7   ? networks::Part::train
+                        : i % 10 < 9 ? networks::Part::validation
+                                     : networks::Part::test);
   }
   return data;
 }
 
 TEST(BatchedScreening, EndsWithTheErrorsOfTheLoopOfSingleNetworks) {
   const auto data = noisy_columns();
-  ScreenSettings settings;
+  networks::ScreenSettings settings;
   settings.builds = 2;
   settings.max_epochs = 25;
   settings.n_units = 6;
@@ -86,7 +88,7 @@ TEST(BatchedScreening, EndsWithTheErrorsOfTheLoopOfSingleNetworks) {
   settings.learning_rate = 5e-3;
   const std::vector<std::uint32_t> columns{0, 3, 11};
 
-  const auto batched = screen_networks(data, settings, {.seed = base::Seed(6)});
+  const auto batched = networks::screen_networks(data, settings, {.seed = base::Seed(6)});
   const auto single = benchmark::screen_sequentially(data, settings, base::Seed(6), columns);
 
   for (Eigen::Index b = 0; b < 2; ++b)

@@ -13,13 +13,13 @@
 namespace elrom::torch {
 namespace {
 
-using study::Hyperparameters;
-using study::TrainingProblem;
-using study::TrainingResult;
+using networks::Hyperparameters;
+using networks::TrainingProblem;
+using networks::TrainingResult;
 
 // Two smooth outputs of three inputs.
-TrainingProblem smooth_problem(Eigen::Index n_train = 200, float noise = 0) {
-  TrainingProblem problem;
+networks::TrainingProblem smooth_problem(Eigen::Index n_train = 200, float noise = 0) {
+  networks::TrainingProblem problem;
   const auto targets = [&](const MatrixF& x, std::uint64_t seed) {
     MatrixF y(x.rows(), 2);
     y.col(0) = (x.col(0).array() + 0.5F * x.col(1).array()).sin();
@@ -49,7 +49,7 @@ std::vector<float> weights_of(const model::Network& network) {
   return all;
 }
 
-class Recorder : public study::TrainingMonitor {
+class Recorder : public networks::TrainingMonitor {
  public:
   explicit Recorder(std::function<bool(int)> go_on = [](int) { return true; }) : go_on_(std::move(go_on)) {}
   bool keep_going(int epoch, double validation_mse) override {
@@ -62,7 +62,7 @@ class Recorder : public study::TrainingMonitor {
   std::function<bool(int)> go_on_;
 };
 
-const Hyperparameters usual{.learning_rate = 5e-3, .n_layers = 2, .n_units = 32, .batch_size = 32};
+const networks::Hyperparameters usual{.learning_rate = 5e-3, .n_layers = 2, .n_units = 32, .batch_size = 32};
 
 TEST(TorchTrainer, LearnsASmoothFunction) {
   const auto problem = smooth_problem();
@@ -91,9 +91,9 @@ TEST(TorchTrainer, EarlyStoppingRestoresTheBestWeights) {
 TEST(TorchTrainer, TheSameSeedGivesTheSameBitsOnAnyThread) {
   const auto problem = smooth_problem();
   const auto trainer = make_torch_trainer();
-  Hyperparameters hyperparameters = usual;
+  networks::Hyperparameters hyperparameters = usual;
   hyperparameters.dropout = 0.1;
-  std::vector<TrainingResult> results(6);
+  std::vector<networks::TrainingResult> results(6);
 
   base::parallel_for(6, 3, [&](std::size_t i, int) {
     results[i] = trainer->train(problem, hyperparameters, {12, 12}, base::Seed(i / 2), nullptr, {});
@@ -134,7 +134,7 @@ TEST(TorchTrainer, PrunedByItsMonitor) {
 
 TEST(TorchTrainer, ResumedFromACheckpointItEndsWithTheSameBits) {
   const auto problem = smooth_problem();
-  Hyperparameters hyperparameters = usual;
+  networks::Hyperparameters hyperparameters = usual;
   hyperparameters.dropout = 0.2;
   const test::TemporaryFolder folder;
   const auto checkpoint = folder / "build.checkpoint";
@@ -188,7 +188,7 @@ TEST(TorchTrainer, ACheckpointOfAnotherTrainingOrADamagedOneIsNotUsed) {
 }
 
 TEST(TorchTrainer, ADivergingRateIsBackedOffOnceAndThenLost) {
-  Hyperparameters wild = usual;
+  networks::Hyperparameters wild = usual;
   wild.learning_rate = 1e30;
 
   const auto result =
@@ -217,7 +217,7 @@ TEST(TorchTrainer, WildDataNeverWinWithNotANumber) {
 
 TEST(TorchTrainer, TinyBatchesAndSingleRecordsWork) {
   auto problem = smooth_problem(1);
-  Hyperparameters tiny = usual;
+  networks::Hyperparameters tiny = usual;
   tiny.batch_size = 1;
 
   const auto result = make_torch_trainer()->train(problem, tiny, {3, 3}, base::Seed(1), nullptr, {});

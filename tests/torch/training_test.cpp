@@ -1,6 +1,6 @@
 // The hand-written gradient and Adam step against LibTorch's autograd and optimisers.
 
-#include "../../train/torch/training.hpp"
+#include "training.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@ namespace {
 using test::random_matrix;
 using ::torch::Tensor;
 
-study::TrainingProblem make_problem(bool weighted) {
-  study::TrainingProblem problem;
+networks::TrainingProblem networks::make_problem(bool weighted) {
+  networks::TrainingProblem problem;
   problem.train_inputs = random_matrix(40, 6, base::Seed(1));
   problem.train_targets = random_matrix(40, 5, base::Seed(2));
   problem.validation_inputs = random_matrix(10, 6, base::Seed(3));
@@ -30,7 +30,7 @@ Tensor to_torch(const MatrixF& matrix) {
 
 // Loss of the flat parameters as LibTorch's own operators give it.
 Tensor autograd_loss(const Tensor& flat, const std::vector<std::int64_t>& widths,
-                     model::Activation activation, const study::TrainingProblem& problem) {
+                     model::Activation activation, const networks::TrainingProblem& problem) {
   Tensor x = to_torch(problem.train_inputs);
   std::int64_t at = 0;
   for (std::size_t i = 1; i < widths.size(); ++i) {
@@ -57,13 +57,13 @@ struct Case {
 class Step : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Step, EqualsAutogradAndLibTorchsAdamW) {
-  const auto problem = make_problem(GetParam().weighted);
-  const study::Hyperparameters hyperparameters{.learning_rate = 1e-2,
-                                               .n_layers = 2,
-                                               .n_units = 7,
-                                               .batch_size = 40,
-                                               .weight_decay = 0.1,
-                                               .activation = GetParam().activation};
+  const auto problem = networks::make_problem(GetParam().weighted);
+  const networks::Hyperparameters hyperparameters{.learning_rate = 1e-2,
+                                                  .n_layers = 2,
+                                                  .n_units = 7,
+                                                  .batch_size = 40,
+                                                  .weight_decay = 0.1,
+                                                  .activation = GetParam().activation};
   Training training(problem, hyperparameters, base::Seed(9), {.own_loops = GetParam().own_loops});
   Tensor parameters = training.mlp().parameters().clone().set_requires_grad(true);
   ::torch::optim::AdamW adam({parameters}, ::torch::optim::AdamWOptions(1e-2).weight_decay(0.1));
@@ -94,8 +94,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Step,
 
 // What a GPU runs, on the CPU: the same training to rounding, whatever it draws, weighs and stops by.
 TEST(Training, LibTorchsOperatorsDoWhatOurLoopsDo) {
-  const auto problem = make_problem(true);
-  const study::Hyperparameters hyperparameters{
+  const auto problem = networks::make_problem(true);
+  const networks::Hyperparameters hyperparameters{
       .n_units = 9, .batch_size = 16, .weight_decay = 0.1, .dropout = 0.2};
   Training loops(problem, hyperparameters, base::Seed(9), {});
   Training operators(problem, hyperparameters, base::Seed(9), {.own_loops = false});
@@ -125,7 +125,7 @@ TEST(Training, DropoutKeepsTheExpectedValue) {
 }
 
 TEST(Training, EvaluationIsTheMeanOverTargetsThatCount) {
-  const auto problem = make_problem(true);
+  const auto problem = networks::make_problem(true);
   Training training(problem, {.n_layers = 0}, base::Seed(9), {});
 
   const double mse = training.evaluate();

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/digest.hpp"
-#include "stage_files.hpp"
+#include "elrom/networks/stage_files.hpp"
 
 namespace elrom::mpi {
 namespace {
@@ -21,7 +21,7 @@ void for_every_matrix(Problem& problem, const Work& work) {
   work("validation_weights", problem.validation_weights);
 }
 
-Json to_json(const study::ScreenSettings& settings) {
+Json to_json(const networks::ScreenSettings& settings) {
   return {{"n_units", settings.n_units},
           {"batch_size", settings.batch_size},
           {"learning_rate", settings.learning_rate},
@@ -29,8 +29,8 @@ Json to_json(const study::ScreenSettings& settings) {
           {"patience", settings.patience}};
 }
 
-study::ScreenSettings screen_settings_of(const Json& json) {
-  study::ScreenSettings settings;
+networks::ScreenSettings screen_settings_of(const Json& json) {
+  networks::ScreenSettings settings;
   settings.n_units = json.at("n_units");
   settings.batch_size = json.at("batch_size");
   settings.learning_rate = json.at("learning_rate");
@@ -48,7 +48,7 @@ io::TensorFile message(const char* kind) {
 }
 
 io::TensorFile to_message(const TrainUnit& unit) {
-  auto unit_message = study::to_file(unit.hyperparameters, 0);
+  auto unit_message = networks::to_file(unit.hyperparameters, 0);
   unit_message.set_text("kind", kind::train);
   unit_message.set_text("unit", Json{{"max_epochs", unit.budget.max_epochs},
                                      {"patience", unit.budget.patience},
@@ -65,14 +65,14 @@ io::TensorFile to_message(const TrainUnit& unit) {
 TrainUnit train_unit_of(const io::TensorFile& message) {
   const auto json = Json::parse(message.text("unit"));
   const auto path = message.tensor("checkpoint").u8();
-  return {.hyperparameters = study::hyperparameters_of(message),
+  return {.hyperparameters = networks::hyperparameters_of(message),
           .budget = {json.at("max_epochs"), json.at("patience")},
           .seed = base::Seed(json.at("seed").get<std::uint64_t>()),
           .monitored = json.at("monitored"),
           .checkpoint = {path.begin(), path.end()}};
 }
 
-void add_data(io::TensorFile& message, const study::TrainingProblem& problem) {
+void add_data(io::TensorFile& message, const networks::TrainingProblem& problem) {
   for_every_matrix(problem, [&](const char* name, const MatrixF& matrix) {
     if (matrix.size() > 0) message.set(name, io::Tensor::copy(matrix));
   });
@@ -80,15 +80,15 @@ void add_data(io::TensorFile& message, const study::TrainingProblem& problem) {
 
 bool has_problem(const io::TensorFile& message) { return message.has("train_inputs"); }
 
-study::TrainingProblem problem_of(const io::TensorFile& message) {
-  study::TrainingProblem problem;
+networks::TrainingProblem problem_of(const io::TensorFile& message) {
+  networks::TrainingProblem problem;
   for_every_matrix(problem, [&](const char* name, MatrixF& matrix) {
     if (message.has(name)) matrix = message.tensor(name).matrix();
   });
   return problem;
 }
 
-std::string digest_of(const study::TrainingProblem& problem) {
+std::string digest_of(const networks::TrainingProblem& problem) {
   base::Sha256 sha;
   for_every_matrix(problem, [&](const char* name, const MatrixF& matrix) {
     sha.add(name).add_value<std::int64_t>(matrix.rows()).add_value<std::int64_t>(matrix.cols());
@@ -108,8 +108,8 @@ CrewUnit crew_unit_of(const io::TensorFile& message) {
   return {json.at("i_build"), json.at("columns")};
 }
 
-void add_data(io::TensorFile& message, const study::ScreeningData& data,
-              const study::ScreenSettings& settings, base::Seed seed) {
+void add_data(io::TensorFile& message, const networks::ScreeningData& data,
+              const networks::ScreenSettings& settings, base::Seed seed) {
   std::vector<std::uint8_t> part;
   for (const auto of_record : data.part) part.push_back(static_cast<std::uint8_t>(of_record));
   message.set("inputs", io::Tensor::copy(data.inputs));
@@ -124,7 +124,7 @@ void add_data(io::TensorFile& message, const study::ScreeningData& data,
 
 bool has_screening(const io::TensorFile& message) { return message.has_text("screening"); }
 
-std::unique_ptr<const Screening> screening_of(const io::TensorFile& message) {
+std::unique_ptr<const Screening> screening_job_of(const io::TensorFile& message) {
   const auto json = Json::parse(message.text("screening"));
   const auto plane = message.tensor("plane").i32(), case_of = message.tensor("case_of").i32();
   auto screening = std::make_unique<Screening>();
@@ -137,26 +137,26 @@ std::unique_ptr<const Screening> screening_of(const io::TensorFile& message) {
                      .part = {},
                      .n_planes = json.at("n_planes")};
   for (const auto of_record : message.tensor("part").u8())
-    screening->data.part.push_back(static_cast<study::Part>(of_record));
+    screening->data.part.push_back(static_cast<networks::Part>(of_record));
   return screening;
 }
 
-io::TensorFile to_message(const study::TrainingResult& result) {
-  auto answer = study::to_file(result);
+io::TensorFile to_message(const networks::TrainingResult& result) {
+  auto answer = networks::to_file(result);
   answer.set_text("kind", kind::result);
   answer.set_text("pruned", result.pruned ? "yes" : "no");
   answer.set_text("backed_off", result.backed_off ? "yes" : "no");
   return answer;
 }
 
-study::TrainingResult training_result_of(const io::TensorFile& message) {
-  auto result = study::training_of(message);
+networks::TrainingResult training_result_of(const io::TensorFile& message) {
+  auto result = networks::training_of(message);
   result.pruned = message.text("pruned") == "yes";
   result.backed_off = message.text("backed_off") == "yes";
   return result;
 }
 
-io::TensorFile to_message(const std::vector<study::ColumnOutcome>& outcomes) {
+io::TensorFile to_message(const std::vector<networks::ColumnOutcome>& outcomes) {
   const auto n = static_cast<Eigen::Index>(outcomes.size());
   const auto n_planes = outcomes.empty() ? 0 : static_cast<Eigen::Index>(outcomes.front().plane_error.size());
   MatrixD plane_error(n, n_planes), rest(n, 2);
@@ -171,9 +171,9 @@ io::TensorFile to_message(const std::vector<study::ColumnOutcome>& outcomes) {
   return answer;
 }
 
-std::vector<study::ColumnOutcome> outcomes_of(const io::TensorFile& message) {
+std::vector<networks::ColumnOutcome> outcomes_of(const io::TensorFile& message) {
   const auto plane_error = message.tensor("plane_error").matrix64(), rest = message.tensor("rest").matrix64();
-  std::vector<study::ColumnOutcome> outcomes;
+  std::vector<networks::ColumnOutcome> outcomes;
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
     const auto* planes = plane_error.row(i).data();
     outcomes.push_back({.plane_error = {planes, planes + plane_error.cols()},

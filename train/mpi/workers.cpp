@@ -12,7 +12,7 @@ namespace {
 /// Sends a unit and sees it through, so that the rank is free for the next one also when `monitor` (which may
 /// be missing) or the unit throws.
 io::TensorFile converse(Channel& channel, int rank, const io::TensorFile& unit,
-                        study::TrainingMonitor* monitor, const std::stop_token& stop) {
+                        networks::TrainingMonitor* monitor, const std::stop_token& stop) {
   channel.send(rank, unit);
   std::exception_ptr failure_here;
   const auto goes_on = [&](const io::TensorFile& report) {
@@ -45,19 +45,20 @@ io::TensorFile converse(Channel& channel, int rank, const io::TensorFile& unit,
   }
 }
 
-class SharedTrainer final : public study::Trainer {
+class SharedTrainer final : public networks::Trainer {
  public:
-  SharedTrainer(Channel& channel, Places& places, std::shared_ptr<const study::Trainer> here)
+  SharedTrainer(Channel& channel, Places& places, std::shared_ptr<const networks::Trainer> here)
       : channel_(channel), places_(places), here_(std::move(here)) {}
 
   // Stages carry the trainer's name in their digests: who trained is no part of what came out.
   [[nodiscard]] std::string name() const override { return here_->name(); }
 
-  [[nodiscard]] study::TrainingResult train(const study::TrainingProblem& problem,
-                                            const study::Hyperparameters& hyperparameters,
-                                            const study::TrainingBudget& budget, base::Seed seed,
-                                            study::TrainingMonitor* monitor, const std::stop_token& stop,
-                                            const std::filesystem::path& checkpoint) const override {
+  [[nodiscard]] networks::TrainingResult train(const networks::TrainingProblem& problem,
+                                               const networks::Hyperparameters& hyperparameters,
+                                               const networks::TrainingBudget& budget, base::Seed seed,
+                                               networks::TrainingMonitor* monitor,
+                                               const std::stop_token& stop,
+                                               const std::filesystem::path& checkpoint) const override {
     const auto data = "problem " + digest_of(problem);
     auto lease = places_.lease(data);
     if (lease.rank() == 0)
@@ -75,20 +76,20 @@ class SharedTrainer final : public study::Trainer {
  private:
   Channel& channel_;
   Places& places_;
-  std::shared_ptr<const study::Trainer> here_;
+  std::shared_ptr<const networks::Trainer> here_;
 };
 
-class Ranks final : public study::Workers {
+class Ranks final : public networks::Workers {
  public:
   explicit Ranks(Channel& channel) : channel_(channel), places_(channel.size()) {}
 
   [[nodiscard]] int n_units() const override { return channel_.size(); }
 
-  [[nodiscard]] study::CrewTrainer crew_trainer(const study::ScreeningData& data,
-                                                const study::ScreenSettings& settings,
-                                                base::Seed seed) const override {
+  [[nodiscard]] networks::CrewTrainer crew_trainer(const networks::ScreeningData& data,
+                                                   const networks::ScreenSettings& settings,
+                                                   base::Seed seed) const override {
     const auto name = "screening " + std::to_string(++n_screenings_);
-    const auto here = make_crew_trainer(data, settings, seed);
+    const auto here = networks::make_crew_trainer(data, settings, seed);
     return [this, name, here, &data, &settings, seed](
                std::size_t i_build, std::span<const std::uint32_t> columns, const std::stop_token& stop) {
       auto lease = places_.lease(name);
@@ -99,8 +100,8 @@ class Ranks final : public study::Workers {
     };
   }
 
-  [[nodiscard]] std::shared_ptr<const study::Trainer> trainer(
-      std::shared_ptr<const study::Trainer> here) const override {
+  [[nodiscard]] std::shared_ptr<const networks::Trainer> trainer(
+      std::shared_ptr<const networks::Trainer> here) const override {
     return std::make_shared<SharedTrainer>(channel_, places_, std::move(here));
   }
 
@@ -141,6 +142,6 @@ void Places::give_back(int rank) {
   freed_.notify_one();
 }
 
-std::unique_ptr<study::Workers> make_workers(Channel& channel) { return std::make_unique<Ranks>(channel); }
+std::unique_ptr<networks::Workers> make_workers(Channel& channel) { return std::make_unique<Ranks>(channel); }
 
 }  // namespace elrom::mpi

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "channel.hpp"
-#include "elrom/study/workers.hpp"
+#include "elrom/networks/workers.hpp"
 
 namespace elrom::mpi {
 
@@ -46,6 +46,6 @@ class Places {
   std::vector<Place> places_;
 };
 
-[[nodiscard]] std::unique_ptr<study::Workers> make_workers(Channel& channel);
+[[nodiscard]] std::unique_ptr<networks::Workers> make_workers(Channel& channel);
 
 }  // namespace elrom::mpi

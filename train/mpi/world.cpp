@@ -9,7 +9,7 @@ namespace elrom::mpi {
 namespace {
 
 /// Tells rank 0 of every epoch where it wants to know, and hears when the run is stopped.
-class Reporter final : public study::TrainingMonitor {
+class Reporter final : public networks::TrainingMonitor {
  public:
   Reporter(Channel& channel, bool monitored, std::stop_source& stop)
       : channel_(channel), monitored_(monitored), stop_(stop) {}
@@ -45,7 +45,7 @@ class Reporter final : public study::TrainingMonitor {
 /// A rank that trains for rank 0, with the data of its last unit.
 class Worker {
  public:
-  using MakeTrainer = std::function<std::shared_ptr<const study::Trainer>()>;
+  using MakeTrainer = std::function<std::shared_ptr<const networks::Trainer>()>;
   Worker(Channel& channel, const MakeTrainer& make_trainer, const std::stop_token& stop)
       : channel_(channel), make_trainer_(make_trainer), stop_(stop) {}
 
@@ -77,8 +77,8 @@ class Worker {
   io::TensorFile train_crew(const io::TensorFile& message) {
     if (has_screening(message)) {
       problem_ = {};
-      screening_ = screening_of(message);
-      crews_ = make_crew_trainer(screening_->data, screening_->settings, screening_->seed);
+      screening_ = screening_job_of(message);
+      crews_ = networks::make_crew_trainer(screening_->data, screening_->settings, screening_->seed);
     }
     const auto unit = crew_unit_of(message);
     return to_message(crews_(unit.i_build, unit.columns, stop_));
@@ -94,10 +94,10 @@ class Worker {
   Channel& channel_;
   const MakeTrainer& make_trainer_;
   const std::stop_token& stop_;
-  std::shared_ptr<const study::Trainer> trainer_;
-  study::TrainingProblem problem_;
+  std::shared_ptr<const networks::Trainer> trainer_;
+  networks::TrainingProblem problem_;
   std::unique_ptr<const Screening> screening_;
-  study::CrewTrainer crews_;
+  networks::CrewTrainer crews_;
 };
 
 }  // namespace
@@ -117,9 +117,9 @@ World::~World() {
 int World::rank() const { return impl_->channel.rank(); }
 int World::size() const { return impl_->channel.size(); }
 
-std::unique_ptr<study::Workers> World::workers() const { return make_workers(impl_->channel); }
+std::unique_ptr<networks::Workers> World::workers() const { return make_workers(impl_->channel); }
 
-void World::serve(const std::function<std::shared_ptr<const study::Trainer>()>& make_trainer,
+void World::serve(const std::function<std::shared_ptr<const networks::Trainer>()>& make_trainer,
                   const std::stop_token& stop) const {
   try {
     Worker worker(impl_->channel, make_trainer, stop);

@@ -8,10 +8,10 @@
 #include "elrom/base/random.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/methods/cross_validation.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/report/metrics.hpp"
 #include "elrom/report/study_files.hpp"
-#include "elrom/study/cross_validation.hpp"
 #include "elrom/study/settings.hpp"
 #include "elrom/study/study.hpp"
 #include "refit.hpp"
@@ -23,7 +23,7 @@ namespace {
 struct Material {
   field::SnapshotStore store;
   std::vector<std::size_t> building, scored;
-  study::CaseSet cases;  //!< of `building`
+  field::CaseSet cases;  //!< of `building`
 };
 
 Material gather(const StudyFiles& study) {
@@ -76,18 +76,18 @@ double held_out_nrmse(const Material& material, const model::FieldModel& model, 
   std::vector<float> prediction(statistics.cell_mean.size());
   ErrorSums sums;
   for (Eigen::Index i = 0; i < truth.rows(); ++i) {
-    study::predict_case(model, {inputs.row(i).data(), static_cast<std::size_t>(inputs.cols())},
-                        material.cases.mesh.n_planes, prediction, workspace);
+    methods::predict_case(model, {inputs.row(i).data(), static_cast<std::size_t>(inputs.cols())},
+                          material.cases.mesh.n_planes, prediction, workspace);
     sums += error_sums({truth.row(i).data(), prediction.size()}, prediction, statistics);
   }
   return sums.nrmse();
 }
 
 /// Errors of one field, (sizes, draws).
-MatrixD field_errors(const Material& material, const field::FieldInfo& info, const study::Method& method,
+MatrixD field_errors(const Material& material, const field::FieldInfo& info, const methods::Method& method,
                      const std::vector<std::size_t>& sizes,
-                     const std::vector<std::vector<std::size_t>>& draws, const study::FitContext& context) {
-  study::FieldData data{&material.cases, info, material.store.read(info.name, material.building)};
+                     const std::vector<std::vector<std::size_t>>& draws, const methods::FitContext& context) {
+  field::FieldData data{&material.cases, info, material.store.read(info.name, material.building)};
   const auto truth = material.store.read(info.name, material.scored);
   const auto statistics = training_statistics(data.values, material.cases.mesh.n_columns);
   MatrixD errors(static_cast<Eigen::Index>(sizes.size()), static_cast<Eigen::Index>(draws.size()));
@@ -161,7 +161,7 @@ LearningCurve learning_curve(const LearningCurveOptions& options, Log& log, cons
   const auto sizes = subset_sizes(material.building.size(), options.n_points);
   const auto draws =
       orders(material.building.size(), std::max(1, options.n_repeats), base::Seed(options.seed));
-  const study::FitContext context{
+  const methods::FitContext context{
       .seed = base::Seed(options.seed), .n_threads = options.n_threads, .log = &silent_log(), .stop = stop};
   std::map<std::string, MatrixD> errors;
   for (const auto& info : fields) {

@@ -87,7 +87,7 @@ PageExtras find_extras(const StudyFiles& study) {
              trials = study.directory / "search.sqlite";
   if (std::filesystem::exists(curve)) extras.learning_curve = read_learning_curve(curve);
   if (std::filesystem::exists(cost)) extras.cost = read_cost_report(cost);
-  if (std::filesystem::exists(trials)) extras.searches = study::TrialStore(trials).searches();
+  if (std::filesystem::exists(trials)) extras.searches = networks::TrialStore(trials).searches();
   return extras;
 }
 

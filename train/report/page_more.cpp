@@ -44,7 +44,7 @@ std::string cost_chart(const CostReport& cost, const std::string& label,
 }
 
 // Best value so far over the distinct trials of one search.
-std::string history_chart(const study::TrialStore::Search& search) {
+std::string history_chart(const networks::TrialStore::Search& search) {
   std::vector<double> number, value, best;
   for (const auto& trial : search.trials) {
     if (trial.i_seed != 0 || trial.diverged) continue;
@@ -63,16 +63,16 @@ std::string history_chart(const study::TrialStore::Search& search) {
 
 struct Dimension {
   std::string name;
-  double (*value)(const study::Hyperparameters&);
+  double (*value)(const networks::Hyperparameters&);
 };
 const std::vector<Dimension>& dimensions() {
   static const std::vector<Dimension> all{
-      {"learning rate", [](const study::Hyperparameters& h) { return h.learning_rate; }},
-      {"layers", [](const study::Hyperparameters& h) { return double(h.n_layers); }},
-      {"units", [](const study::Hyperparameters& h) { return double(h.n_units); }},
-      {"batch size", [](const study::Hyperparameters& h) { return double(h.batch_size); }},
-      {"weight decay", [](const study::Hyperparameters& h) { return h.weight_decay; }},
-      {"dropout", [](const study::Hyperparameters& h) { return h.dropout; }}};
+      {"learning rate", [](const networks::Hyperparameters& h) { return h.learning_rate; }},
+      {"layers", [](const networks::Hyperparameters& h) { return double(h.n_layers); }},
+      {"units", [](const networks::Hyperparameters& h) { return double(h.n_units); }},
+      {"batch size", [](const networks::Hyperparameters& h) { return double(h.batch_size); }},
+      {"weight decay", [](const networks::Hyperparameters& h) { return h.weight_decay; }},
+      {"dropout", [](const networks::Hyperparameters& h) { return h.dropout; }}};
   return all;
 }
 
@@ -106,7 +106,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
 
 // Importance of a hyperparameter: absolute rank correlation
 // (Spearman) with the error, averaged over the searches.
-std::string importance_chart(const std::vector<study::TrialStore::Search>& searches) {
+std::string importance_chart(const std::vector<networks::TrialStore::Search>& searches) {
   std::vector<svg::BarRow> rows;
   for (const auto& dimension : dimensions()) {
     double sum = 0;
@@ -132,7 +132,8 @@ std::string importance_chart(const std::vector<study::TrialStore::Search>& searc
 
 // Every trial at its value of one hyperparameter. Searches differ in how hard their columns are, so an error
 // counts in units of the best of its search.
-std::string slice_chart(const Dimension& dimension, const std::vector<study::TrialStore::Search>& searches) {
+std::string slice_chart(const Dimension& dimension,
+                        const std::vector<networks::TrialStore::Search>& searches) {
   std::vector<double> x, y;
   for (const auto& search : searches) {
     double best = std::numeric_limits<double>::infinity();
@@ -220,7 +221,7 @@ std::string cost_section(const CostReport& cost) {
           body + "</tbody></table></div>");
 }
 
-std::string search_section(const std::vector<study::TrialStore::Search>& searches) {
+std::string search_section(const std::vector<networks::TrialStore::Search>& searches) {
   constexpr std::size_t most_shown = 12;
   std::string charts;
   std::size_t n_trials = 0;

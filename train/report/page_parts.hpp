@@ -30,7 +30,7 @@ namespace elrom::report {
 [[nodiscard]] std::string coverage_section(const AccuracyReport& report);
 [[nodiscard]] std::string error_section(const AccuracyReport& report);
 [[nodiscard]] std::string profile_section(const AccuracyReport& report);
-[[nodiscard]] std::string search_section(const std::vector<study::TrialStore::Search>& searches);
+[[nodiscard]] std::string search_section(const std::vector<networks::TrialStore::Search>& searches);
 [[nodiscard]] std::string learning_section(const LearningCurve& curve);
 [[nodiscard]] std::string cost_section(const CostReport& cost);
 

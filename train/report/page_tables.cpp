@@ -7,7 +7,7 @@
 
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
-#include "elrom/study/auto_method.hpp"
+#include "elrom/methods/auto_method.hpp"
 #include "names.hpp"
 #include "page_parts.hpp"
 #include "svg.hpp"
@@ -188,7 +188,7 @@ std::string choice_section(const AccuracyReport& report) {
       "and weights of each band of columns' own (last column) where they are {0:g} % better still (-: all "
       "columns "
       "lie in one band).",
-      100 * study::AutoOptions{}.least_gain);
+      100 * methods::AutoOptions{}.least_gain);
   return section("choice", "What the choice went by", lead,
                  "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
                      "</tbody></table></div>");

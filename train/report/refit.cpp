@@ -5,13 +5,13 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/study/kernel_method.hpp"
-#include "elrom/study/peers.hpp"
+#include "elrom/methods/kernel_method.hpp"
+#include "elrom/methods/peers.hpp"
 
 namespace elrom::report {
 
 std::vector<std::string> refittable_methods() {
-  auto names = study::peer_names();
+  auto names = methods::peer_names();
   names.push_back("kernel");
   return names;
 }
@@ -28,13 +28,13 @@ std::string method_of(const model::BundleReader& bundle) {
   return most == votes.end() ? "kernel" : most->first;
 }
 
-std::unique_ptr<study::Method> make_method(const std::string& name) {
-  if (name == "kernel") return study::make_kernel_method();
+std::unique_ptr<methods::Method> make_method(const std::string& name) {
+  if (name == "kernel") return methods::make_kernel_method();
   const auto known = refittable_methods();
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw UsageError({.what = "no method '" + name + "' that a learning curve can fit",
                       .advice = base::name_advice(name, known)});
-  return study::make_peer(name);
+  return methods::make_peer(name);
 }
 
 }  // namespace elrom::report

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "elrom/methods/method.hpp"
 #include "elrom/model/bundle.hpp"
-#include "elrom/study/method.hpp"
 
 namespace elrom::report {
 
@@ -15,6 +15,6 @@ namespace elrom::report {
 /// The one of them that answers for most fields of a bundle; "kernel" where none does.
 [[nodiscard]] std::string method_of(const model::BundleReader& bundle);
 /// @throws UsageError for a method that cannot be fitted here, with those that can
-[[nodiscard]] std::unique_ptr<study::Method> make_method(const std::string& name);
+[[nodiscard]] std::unique_ptr<methods::Method> make_method(const std::string& name);
 
 }  // namespace elrom::report

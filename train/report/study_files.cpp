@@ -6,8 +6,8 @@
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/study/held_out.hpp"
 #include "elrom/study/settings.hpp"
-#include "elrom/study/split.hpp"
 
 namespace elrom::report {
 namespace {

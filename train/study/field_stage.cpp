@@ -8,9 +8,9 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/math/statistics.hpp"
-#include "elrom/study/auto_method.hpp"
-#include "elrom/study/cross_validation.hpp"
-#include "records.hpp"
+#include "elrom/methods/auto_method.hpp"
+#include "elrom/methods/cross_validation.hpp"
+#include "elrom/networks/records.hpp"
 
 namespace elrom::study {
 namespace {
@@ -20,15 +20,16 @@ using Json = nlohmann::ordered_json;
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 // One method by itself, brought into the same form as a choice among several.
-AutoFit fit_alone(const FieldStageRequest& request, const std::vector<std::size_t>& rows,
-                  const FitContext& context) {
+methods::AutoFit fit_alone(const FieldStageRequest& request, const std::vector<std::size_t>& rows,
+                           const methods::FitContext& context) {
   const auto& data = request.data;
   const auto& method = *request.candidates.front();
-  AutoFit fit;
+  methods::AutoFit fit;
   fit.nrmse = fit.nrmse_by_band = NAN;
   if (request.n_folds > 0) {
-    const auto folds = load_grouped_folds(data.cases->loads, rows, request.n_folds);
-    fit.nrmse = cross_validated_nrmse(data, rows, data.values - method.cross_predict(data, folds, context));
+    const auto folds = methods::load_grouped_folds(data.cases->loads, rows, request.n_folds);
+    fit.nrmse =
+        methods::cross_validated_nrmse(data, rows, data.values - method.cross_predict(data, folds, context));
   }
   fit.candidates.push_back({.name = method.name(), .nrmse = fit.nrmse, .weights = {1.0}});
   fit.model = method.fit(data, rows, context);
@@ -38,10 +39,10 @@ AutoFit fit_alone(const FieldStageRequest& request, const std::vector<std::size_
 /// Truth minus prediction, each case by a model that never saw it but saw the loads around it, as intervals
 /// promise it: the folds that methods compete in leave gaps, which a new case need not meet. Twice as many of
 /// them, because a model that misses as many cases as those do errs more than the one that will answer.
-MatrixF residuals_of_new_cases(const FieldStageRequest& request, const AutoFit& fit,
-                               const std::vector<std::size_t>& rows, const FitContext& context) {
+MatrixF residuals_of_new_cases(const FieldStageRequest& request, const methods::AutoFit& fit,
+                               const std::vector<std::size_t>& rows, const methods::FitContext& context) {
   const auto& data = request.data;
-  const auto folds = spread_folds(*data.cases, rows, 2 * request.n_folds);
+  const auto folds = methods::spread_folds(*data.cases, rows, 2 * request.n_folds);
   MatrixF residuals = data.values;
   const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);
   for (std::size_t i = 0; i < request.candidates.size(); ++i) {
@@ -61,7 +62,7 @@ MatrixF residuals_of_new_cases(const FieldStageRequest& request, const AutoFit& 
   return residuals;
 }
 
-Json accuracy_of(const std::string& name, const AutoFit& fit) {
+Json accuracy_of(const std::string& name, const methods::AutoFit& fit) {
   Json candidates = Json::array();
   for (const auto& candidate : fit.candidates) {
     candidates.push_back({{"name", candidate.name},
@@ -76,14 +77,15 @@ Json accuracy_of(const std::string& name, const AutoFit& fit) {
           {"candidates", candidates}};
 }
 
-io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& context) {
+io::TensorFile make_stage(const FieldStageRequest& request, const methods::FitContext& context) {
   const auto begin = std::chrono::steady_clock::now();
   const auto& data = request.data;
   const auto rows = math::all_rows(data.cases->n_cases());
-  const auto fit = request.name == "auto"
-                       ? fit_auto(data, rows, request.candidates,
-                                  {.n_folds = request.n_folds, .band_edges = request.band_edges}, context)
-                       : fit_alone(request, rows, context);
+  const auto fit =
+      request.name == "auto"
+          ? methods::fit_auto(data, rows, request.candidates,
+                              {.n_folds = request.n_folds, .band_edges = request.band_edges}, context)
+          : fit_alone(request, rows, context);
   io::TensorFile file;
   if (request.n_folds > 0) {
     try {
@@ -103,9 +105,9 @@ io::TensorFile make_stage(const FieldStageRequest& request, const FitContext& co
   return file;
 }
 
-std::string digest_of(const FieldStageRequest& request, const FitContext& context) {
+std::string digest_of(const FieldStageRequest& request, const methods::FitContext& context) {
   base::Sha256 digest;
-  digest.add(data_digest(request.data, math::all_rows(request.data.cases->n_cases())));
+  digest.add(field::data_digest(request.data, math::all_rows(request.data.cases->n_cases())));
   digest.add(request.name)
       .add(request.settings_digest)
       .add("intervals on twice as many spread folds, weights by band");
@@ -135,7 +137,8 @@ double FieldStage::seconds() const {
   return file.has_text("seconds") ? base::to_double(file.text("seconds")).value_or(NAN) : NAN;
 }
 
-FieldStage fit_field(const FieldStageRequest& request, const StageCache& cache, const FitContext& context) {
+FieldStage fit_field(const FieldStageRequest& request, const io::StageCache& cache,
+                     const methods::FitContext& context) {
   check(!request.candidates.empty(), "fit_field: a method");
   return {cache.get("model", request.name + "-" + request.data.info.name, digest_of(request, context),
                     [&] { return make_stage(request, context); })};

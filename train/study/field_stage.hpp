@@ -4,9 +4,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "elrom/io/stage_cache.hpp"
+#include "elrom/methods/method.hpp"
 #include "elrom/model/uncertainty.hpp"
-#include "elrom/study/method.hpp"
-#include "elrom/study/stage_cache.hpp"
 
 namespace elrom::study {
 
@@ -24,16 +24,16 @@ struct FieldStage {
 };
 
 struct FieldStageRequest {
-  std::string name;                       ///< "auto", "pod_gp" ...
-  std::vector<const Method*> candidates;  ///< one, or for "auto" those it chooses among
-  const FieldData& data;
+  std::string name;                                ///< "auto", "pod_gp" ...
+  std::vector<const methods::Method*> candidates;  ///< one, or for "auto" those it chooses among
+  const field::FieldData& data;
   std::vector<double> band_edges;  ///< for "auto": see AutoOptions
   std::size_t n_folds = 0;         ///< cross-validation for error and intervals; 0: none
   std::string settings_digest;     ///< of every setting that the result depends on
 };
 
 /// From the cache, or fitted now on all cases of the data.
-[[nodiscard]] FieldStage fit_field(const FieldStageRequest& request, const StageCache& cache,
-                                   const FitContext& context);
+[[nodiscard]] FieldStage fit_field(const FieldStageRequest& request, const io::StageCache& cache,
+                                   const methods::FitContext& context);
 
 }  // namespace elrom::study

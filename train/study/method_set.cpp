@@ -4,9 +4,9 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/study/kernel_method.hpp"
-#include "elrom/study/peers.hpp"
-#include "elrom/study/pod_mlp.hpp"
+#include "elrom/methods/kernel_method.hpp"
+#include "elrom/methods/peers.hpp"
+#include "elrom/methods/pod_mlp.hpp"
 
 namespace elrom::study {
 namespace {
@@ -18,8 +18,8 @@ NotBuiltError no_trainer(const std::string& name) {
                         .advice = "build with -DELROM_TORCH=ON, or choose another method"});
 }
 
-PodMlpOptions pod_mlp_options(const Settings& settings) {
-  PodMlpOptions options;
+methods::PodMlpOptions pod_mlp_options(const Settings& settings) {
+  methods::PodMlpOptions options;
   options.builds = settings.fit.builds;
   options.mirrors = settings.networks.mirrors && settings.symmetry.enabled;
   return options;
@@ -27,26 +27,27 @@ PodMlpOptions pod_mlp_options(const Settings& settings) {
 
 }  // namespace
 
-MethodSet::MethodSet(const Settings& settings, Toolbox toolbox, const StageCache* cache, TrialStore* trials)
+MethodSet::MethodSet(const Settings& settings, Toolbox toolbox, const io::StageCache* cache,
+                     networks::TrialStore* trials)
     : settings_(settings), toolbox_(std::move(toolbox)), cache_(cache), trials_(trials) {
   if (needs_trainer(settings_.method) && !has_networks()) throw no_trainer(settings_.method);
   for (const auto& name : settings_.peers.methods) {
     if (!is_peer(name)) {
       throw UsageError({.what = "unknown peer '" + name + "'",
                         .where = "peers.methods",
-                        .advice = base::name_advice(name, peer_names())});
+                        .advice = base::name_advice(name, methods::peer_names())});
     }
   }
 }
 
-std::unique_ptr<Method> MethodSet::make(const std::string& name) const {
-  if (is_peer(name)) return make_peer(name);
-  if (name == "kernel") return make_kernel_method();
-  if (name == "pod_mlp") return make_pod_mlp(toolbox_.trainer, pod_mlp_options(settings_));
+std::unique_ptr<methods::Method> MethodSet::make(const std::string& name) const {
+  if (is_peer(name)) return methods::make_peer(name);
+  if (name == "kernel") return methods::make_kernel_method();
+  if (name == "pod_mlp") return methods::make_pod_mlp(toolbox_.trainer, pod_mlp_options(settings_));
   throw UsageError({.what = "unknown method '" + name + "'", .where = "method"});
 }
 
-const Method& MethodSet::get(const std::string& name) {
+const methods::Method& MethodSet::get(const std::string& name) {
   if (needs_trainer(name) && !has_networks()) throw no_trainer(name);
   if (name == "networks") return networks();
   auto& method = made_[name];
@@ -54,14 +55,15 @@ const Method& MethodSet::get(const std::string& name) {
   return *method;
 }
 
-NetworksMethod& MethodSet::networks() {
+methods::NetworksMethod& MethodSet::networks() {
   auto& method = made_["networks"];
-  if (!method) method = std::make_unique<NetworksMethod>(settings_, toolbox_.trainer, cache_, trials_);
-  return static_cast<NetworksMethod&>(*method);
+  if (!method)
+    method = std::make_unique<methods::NetworksMethod>(settings_, toolbox_.trainer, cache_, trials_);
+  return static_cast<methods::NetworksMethod&>(*method);
 }
 
-std::vector<const Method*> MethodSet::candidates() {
-  std::vector<const Method*> methods{&get("kernel")};
+std::vector<const methods::Method*> MethodSet::candidates() {
+  std::vector<const methods::Method*> methods{&get("kernel")};
   for (const auto& name : settings_.peers.methods) methods.push_back(&get(name));
   if (settings_.peers.networks && has_networks()) methods.push_back(&get("networks"));
   return methods;
@@ -77,7 +79,7 @@ std::vector<std::string> MethodSet::bundles() const {
 }
 
 bool MethodSet::is_peer(const std::string& name) const {
-  return std::ranges::find(peer_names(), name) != peer_names().end();
+  return std::ranges::find(methods::peer_names(), name) != methods::peer_names().end();
 }
 
 bool MethodSet::trains_networks(const std::string& name) const {

@@ -8,14 +8,15 @@ namespace elrom::study {
 class MethodSet {
  public:
   /// @throws NotBuiltError when the settings name a method that needs a trainer and there is none
-  MethodSet(const Settings& settings, Toolbox toolbox, const StageCache* cache, TrialStore* trials);
+  MethodSet(const Settings& settings, Toolbox toolbox, const io::StageCache* cache,
+            networks::TrialStore* trials);
 
   /// @throws UsageError for an unknown name
-  [[nodiscard]] const Method& get(const std::string& name);
+  [[nodiscard]] const methods::Method& get(const std::string& name);
   /// Without a trainer it can screen, no more.
-  [[nodiscard]] NetworksMethod& networks();
+  [[nodiscard]] methods::NetworksMethod& networks();
   /// What "auto" chooses among.
-  [[nodiscard]] std::vector<const Method*> candidates();
+  [[nodiscard]] std::vector<const methods::Method*> candidates();
   /// Methods to write bundles of: the model's own first, then the peers.
   [[nodiscard]] std::vector<std::string> bundles() const;
   /// Whether networks take part in this method.
@@ -25,14 +26,14 @@ class MethodSet {
   [[nodiscard]] std::string settings_text(const std::string& name) const;
 
  private:
-  [[nodiscard]] std::unique_ptr<Method> make(const std::string& name) const;
+  [[nodiscard]] std::unique_ptr<methods::Method> make(const std::string& name) const;
   [[nodiscard]] bool has_networks() const { return toolbox_.trainer != nullptr; }
 
   const Settings& settings_;
   Toolbox toolbox_;
-  const StageCache* cache_;
-  TrialStore* trials_;
-  std::map<std::string, std::unique_ptr<Method>> made_;
+  const io::StageCache* cache_;
+  networks::TrialStore* trials_;
+  std::map<std::string, std::unique_ptr<methods::Method>> made_;
 };
 
 }  // namespace elrom::study

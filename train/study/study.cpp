@@ -12,7 +12,8 @@
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/math/statistics.hpp"
-#include "elrom/study/split.hpp"
+#include "elrom/networks/split.hpp"
+#include "elrom/study/held_out.hpp"
 #include "field_stage.hpp"
 #include "method_set.hpp"
 #include "study_bundle.hpp"
@@ -86,17 +87,17 @@ struct Study::Impl {
   }
 
   [[nodiscard]] base::Seed seed() const { return base::Seed(static_cast<std::uint64_t>(settings.seed)); }
-  [[nodiscard]] FitContext context() const {
+  [[nodiscard]] methods::FitContext context() const {
     return {.seed = seed(), .n_threads = settings.n_threads(), .log = &log, .stop = stop, .workers = workers};
   }
 
   void write_names() const {
     SplitNames split{.by = settings.split.by, .train = {}, .validation = {}, .test = {}, .held_out = {}};
-    const auto parts = split_cases(cases.loads, settings.split.fractions, seed());
+    const auto parts = networks::split_cases(cases.loads, settings.split.fractions, seed());
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      auto& names = parts[i] == Part::train        ? split.train
-                    : parts[i] == Part::validation ? split.validation
-                                                   : split.test;
+      auto& names = parts[i] == networks::Part::train        ? split.train
+                    : parts[i] == networks::Part::validation ? split.validation
+                                                             : split.test;
       names.push_back(cases.names[i]);
     }
     for (const auto row : rows.held_out) split.held_out.push_back(store.cases()[row].inputs.name);
@@ -108,7 +109,7 @@ struct Study::Impl {
   void for_every_field(const Work& work) {
     for (const auto& info : fields) {
       if (stop.stop_requested()) throw Interrupted("stopped on request; the next run goes on from here");
-      FieldData data{&cases, info, store.read(info.name, rows.building)};
+      field::FieldData data{&cases, info, store.read(info.name, rows.building)};
       work(data);
     }
   }
@@ -116,10 +117,11 @@ struct Study::Impl {
   std::vector<FieldOutcome> plan_networks(bool with_search) {
     const auto& networks = methods.networks();
     std::vector<FieldOutcome> outcomes;
-    for_every_field([&](const FieldData& data) {
+    for_every_field([&](const field::FieldData& data) {
       const auto all = math::all_rows(cases.n_cases());
-      auto bands = with_search ? networks.plan(data, all, context()).bands
-                               : make_bands(networks.screen_field(data, all, context()), settings.bands);
+      auto bands = with_search
+                       ? networks.plan(data, all, context()).bands
+                       : networks::make_bands(networks.screen_field(data, all, context()), settings.bands);
       outcomes.push_back({.field = data.info.name,
                           .method = "networks",
                           .cross_validated_nrmse = NAN,
@@ -129,12 +131,13 @@ struct Study::Impl {
   }
 
   // The earlier cases' screening and search are in the cache; the fast screen tells whether they still hold.
-  void reuse_plan(const FieldData& data) {
+  void reuse_plan(const field::FieldData& data) {
     const auto all = math::all_rows(cases.n_cases());
     auto& networks = methods.networks();
     networks.forget_plan(data.info.name);
-    const double equal = equal_bands(networks.fast_screen(data, earlier_rows, context()),
-                                     networks.fast_screen(data, all, context()), settings.bands.edges);
+    const double equal =
+        networks::equal_bands(networks.fast_screen(data, earlier_rows, context()),
+                              networks.fast_screen(data, all, context()), settings.bands.edges);
     log.info(fmt::format("{}: {:.0f} % of columns keep their band{}", data.info.name, 100 * equal,
                          equal < least_equal ? "; screened and searched again" : ""));
     if (equal >= least_equal)
@@ -142,7 +145,7 @@ struct Study::Impl {
   }
 
   // Peers see no mirrors; whatever else is asked for sees all that the study has.
-  FieldStage fit_one(const std::string& name, FieldData& data, bool cross_validate) {
+  FieldStage fit_one(const std::string& name, field::FieldData& data, bool cross_validate) {
     if (earlier_rows.size() > 1 && methods.trains_networks(name)) reuse_plan(data);
     data.cases = methods.is_peer(name) ? &plain_cases : &cases;
     const FieldStageRequest request{
@@ -162,7 +165,7 @@ struct Study::Impl {
     const auto names = with_peers ? methods.bundles() : std::vector{settings.method};
     std::map<std::string, std::map<std::string, FieldStage>> stages;  // by method, field
     std::vector<FieldOutcome> outcomes;
-    for_every_field([&](FieldData& data) {
+    for_every_field([&](field::FieldData& data) {
       const auto& field = data.info.name;
       for (const auto& name : names) {
         if (stop.stop_requested()) throw Interrupted("stopped on request; the next run goes on from here");
@@ -215,11 +218,11 @@ struct Study::Impl {
   field::SnapshotStore store;
   HeldOut rows;
   std::vector<std::size_t> earlier_rows;  // of `cases`; retraining only
-  CaseSet cases, plain_cases;
+  field::CaseSet cases, plain_cases;
   std::vector<field::FieldInfo> fields;
-  StageCache cache;
-  TrialStore trials;
-  const Workers* workers;
+  io::StageCache cache;
+  networks::TrialStore trials;
+  const networks::Workers* workers;
   MethodSet methods;
 };
 
@@ -236,7 +239,7 @@ std::vector<FieldOutcome> Study::fit(const std::filesystem::path& bundle) {
 std::vector<FieldOutcome> Study::run() { return impl_->fit(true, impl_->folder / "model.elrom"); }
 const Settings& Study::settings() const { return impl_->settings; }
 const field::SnapshotStore& Study::store() const { return impl_->store; }
-const CaseSet& Study::cases() const { return impl_->cases; }
+const field::CaseSet& Study::cases() const { return impl_->cases; }
 const std::vector<std::size_t>& Study::held_out() const { return impl_->rows.held_out; }
 
 void Study::reuse_plans_of(const std::vector<std::string>& earlier_cases) {

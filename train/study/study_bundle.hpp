@@ -1,7 +1,7 @@
 #pragma once
 // Stages of one method, field by field, put together into a bundle. Internal to the study.
 
-#include "elrom/study/method.hpp"
+#include "elrom/methods/method.hpp"
 #include "field_stage.hpp"
 
 namespace elrom::study {
@@ -9,7 +9,7 @@ namespace elrom::study {
 struct StudyBundle {
   std::string method;
   std::vector<field::FieldInfo> fields;
-  const CaseSet& cases;
+  const field::CaseSet& cases;
   std::string store_digest, settings_digest;
 };
 

@@ -22,9 +22,9 @@ std::vector<field::Mirror> resolved_mirrors(const field::SnapshotStore& store, c
 
 }  // namespace
 
-CaseSet study_cases(const field::SnapshotStore& store, const Settings& settings,
-                    const std::vector<std::size_t>& rows, Log& log) {
-  CaseSet cases;
+field::CaseSet study_cases(const field::SnapshotStore& store, const Settings& settings,
+                           const std::vector<std::size_t>& rows, Log& log) {
+  field::CaseSet cases;
   cases.mesh = store.mesh();
   cases.schema = store.schema();
   cases.inputs = store.inputs(rows);

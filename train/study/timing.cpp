@@ -25,8 +25,9 @@ double peak_rss_gib() {
   return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);
 }
 
-void write_timing(const std::filesystem::path& path, const std::map<std::string, StageClock::Entry>& entries,
-                  double total_seconds, int n_threads, const std::map<std::string, double>& methods) {
+void write_timing(const std::filesystem::path& path,
+                  const std::map<std::string, io::StageClock::Entry>& entries, double total_seconds,
+                  int n_threads, const std::map<std::string, double>& methods) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   std::int64_t reused = 0;
   for (const auto& [stage, entry] : entries) {

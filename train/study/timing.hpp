@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "elrom/study/stage_cache.hpp"
+#include "elrom/io/stage_cache.hpp"
 
 namespace elrom::study {
 
@@ -12,7 +12,8 @@ namespace elrom::study {
 
 /// Keeps, in "from_nothing", the seconds of the last run that reused nothing.
 /// @param methods seconds that each method took when it was fitted, however long ago; NaN is left out
-void write_timing(const std::filesystem::path& path, const std::map<std::string, StageClock::Entry>& entries,
-                  double total_seconds, int n_threads, const std::map<std::string, double>& methods = {});
+void write_timing(const std::filesystem::path& path,
+                  const std::map<std::string, io::StageClock::Entry>& entries, double total_seconds,
+                  int n_threads, const std::map<std::string, double>& methods = {});
 
 }  // namespace elrom::study

@@ -66,8 +66,8 @@ void load(const io::TensorFile& file, Training& training) {
 
 }  // namespace
 
-std::string training_digest(const study::TrainingProblem& problem, const study::Hyperparameters& h,
-                            const study::TrainingBudget& budget, base::Seed seed) {
+std::string training_digest(const networks::TrainingProblem& problem, const networks::Hyperparameters& h,
+                            const networks::TrainingBudget& budget, base::Seed seed) {
   base::Sha256 sha;
   for (const MatrixF* matrix :
        {&problem.train_inputs, &problem.train_targets, &problem.train_weights, &problem.validation_inputs,

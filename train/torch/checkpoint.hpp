@@ -9,9 +9,9 @@
 namespace elrom::torch {
 
 /// Identity of a training: its data, hyperparameters, budget and seed.
-[[nodiscard]] std::string training_digest(const study::TrainingProblem& problem,
-                                          const study::Hyperparameters& hyperparameters,
-                                          const study::TrainingBudget& budget, base::Seed seed);
+[[nodiscard]] std::string training_digest(const networks::TrainingProblem& problem,
+                                          const networks::Hyperparameters& hyperparameters,
+                                          const networks::TrainingBudget& budget, base::Seed seed);
 
 void save_checkpoint(const std::filesystem::path& path, const std::string& digest, Training& training);
 

@@ -10,7 +10,7 @@
 
 #include "elrom/base/random.hpp"
 #include "elrom/model/network.hpp"
-#include "elrom/study/trainer.hpp"
+#include "elrom/networks/trainer.hpp"
 
 namespace elrom::torch {
 

@@ -35,8 +35,8 @@ constexpr double back_off = 0.1;
 /// One call of train().
 class Run {
  public:
-  Run(const study::TrainingProblem& problem, const study::Hyperparameters& hyperparameters,
-      const study::TrainingBudget& budget, base::Seed seed, ::torch::Device device,
+  Run(const networks::TrainingProblem& problem, const networks::Hyperparameters& hyperparameters,
+      const networks::TrainingBudget& budget, base::Seed seed, ::torch::Device device,
       std::filesystem::path checkpoint)
       : training_(problem, hyperparameters, seed, {device}),
         budget_(budget),
@@ -44,7 +44,7 @@ class Run {
     if (!checkpoint_.empty()) digest_ = training_digest(problem, hyperparameters, budget, seed);
   }
 
-  study::TrainingResult run(study::TrainingMonitor* monitor, const std::stop_token& stop) {
+  networks::TrainingResult run(networks::TrainingMonitor* monitor, const std::stop_token& stop) {
     bool pruned = load_checkpoint(checkpoint_, digest_, training_) && !replay(monitor);
     while (!pruned && !finished()) {
       if (stop.stop_requested()) interrupt();
@@ -69,7 +69,7 @@ class Run {
   }
 
   /// Tells the monitor of the epochs before the checkpoint. @return false when it gives the training up
-  [[nodiscard]] bool replay(study::TrainingMonitor* monitor) {
+  [[nodiscard]] bool replay(networks::TrainingMonitor* monitor) {
     if (monitor == nullptr) return true;
     for (std::size_t i = 0; i < progress().history.size(); ++i)
       if (!monitor->keep_going(static_cast<int>(i) + 1, progress().history[i])) return false;
@@ -87,10 +87,10 @@ class Run {
     saved_ = Clock::now();
   }
 
-  study::TrainingResult finish(bool pruned, bool diverged) {
+  networks::TrainingResult finish(bool pruned, bool diverged) {
     std::error_code ignored;
     if (!checkpoint_.empty()) std::filesystem::remove(checkpoint_, ignored);
-    study::TrainingResult result;
+    networks::TrainingResult result;
     result.epochs = progress().epoch;
     result.pruned = pruned;
     result.diverged = diverged || progress().best_epoch == 0;
@@ -103,23 +103,24 @@ class Run {
   }
 
   Training training_;
-  study::TrainingBudget budget_;
+  networks::TrainingBudget budget_;
   std::filesystem::path checkpoint_;
   std::string digest_;
   Clock::time_point saved_ = Clock::now();
 };
 
-class TorchTrainer final : public study::Trainer {
+class TorchTrainer final : public networks::Trainer {
  public:
   explicit TorchTrainer(::torch::Device device) : device_(device) {}
 
   [[nodiscard]] std::string name() const override { return "torch:" + device_.str(); }
 
-  [[nodiscard]] study::TrainingResult train(const study::TrainingProblem& problem,
-                                            const study::Hyperparameters& hyperparameters,
-                                            const study::TrainingBudget& budget, base::Seed seed,
-                                            study::TrainingMonitor* monitor, const std::stop_token& stop,
-                                            const std::filesystem::path& checkpoint) const override {
+  [[nodiscard]] networks::TrainingResult train(const networks::TrainingProblem& problem,
+                                               const networks::Hyperparameters& hyperparameters,
+                                               const networks::TrainingBudget& budget, base::Seed seed,
+                                               networks::TrainingMonitor* monitor,
+                                               const std::stop_token& stop,
+                                               const std::filesystem::path& checkpoint) const override {
     const OneFastThread guard;
     return Run(problem, hyperparameters, budget, seed, device_, checkpoint).run(monitor, stop);
   }
@@ -130,7 +131,7 @@ class TorchTrainer final : public study::Trainer {
 
 }  // namespace
 
-std::unique_ptr<study::Trainer> make_torch_trainer(const std::string& device) {
+std::unique_ptr<networks::Trainer> make_torch_trainer(const std::string& device) {
   return std::make_unique<TorchTrainer>(device_of(device));
 }
 

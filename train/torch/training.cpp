@@ -16,7 +16,8 @@ using ::torch::Tensor;
 
 constexpr std::int64_t evaluation_rows = 256;
 
-std::vector<std::int64_t> widths_of(const study::TrainingProblem& problem, const study::Hyperparameters& h) {
+std::vector<std::int64_t> widths_of(const networks::TrainingProblem& problem,
+                                    const networks::Hyperparameters& h) {
   check(h.n_layers >= 0 && h.n_units > 0 && h.batch_size > 0, "sizes of a network and its batches");
   std::vector<std::int64_t> widths{problem.train_inputs.cols()};
   widths.insert(widths.end(), static_cast<std::size_t>(h.n_layers), h.n_units);
@@ -35,7 +36,7 @@ OneFastThread::OneFastThread() {
 
 OneFastThread::~OneFastThread() { at::globalContext().setFlushDenormal(false); }
 
-Training::Training(const study::TrainingProblem& problem, const study::Hyperparameters& hyperparameters,
+Training::Training(const networks::TrainingProblem& problem, const networks::Hyperparameters& hyperparameters,
                    base::Seed seed, Place place)
     : hyperparameters_(hyperparameters),
       seed_(seed),

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adam.hpp"
-#include "elrom/study/trainer.hpp"
+#include "elrom/networks/trainer.hpp"
 #include "mlp.hpp"
 #include "records.hpp"
 
@@ -24,7 +24,7 @@ struct Progress {
 
 class Training {
  public:
-  Training(const study::TrainingProblem& problem, const study::Hyperparameters& hyperparameters,
+  Training(const networks::TrainingProblem& problem, const networks::Hyperparameters& hyperparameters,
            base::Seed seed, Place place);
 
   /// One sweep over the training records in the epoch's own random
@@ -47,7 +47,7 @@ class Training {
   void residual(Pass& pass, double scale);
   [[nodiscard]] double take_sum();
 
-  study::Hyperparameters hyperparameters_;
+  networks::Hyperparameters hyperparameters_;
   base::Seed seed_;
   bool own_loops_;
   Records train_, validation_;

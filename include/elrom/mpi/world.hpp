@@ -11,7 +11,7 @@
 #include <memory>
 #include <stop_token>
 
-#include "elrom/study/workers.hpp"
+#include "elrom/networks/workers.hpp"
 
 namespace elrom::mpi {
 
@@ -29,12 +29,12 @@ class World {
   [[nodiscard]] int size() const;
 
   /// Rank 0: the way to the other ranks. The world must outlive it.
-  [[nodiscard]] std::unique_ptr<study::Workers> workers() const;
+  [[nodiscard]] std::unique_ptr<networks::Workers> workers() const;
 
   /// Other ranks: trains what rank 0 asks for until it needs no more. An exception of a unit, or of
   /// `make_trainer` (called with the first training), is sent to rank 0; any other ends the job, for rank 0
   /// would wait for ever. @param stop ends the training in hand
-  void serve(const std::function<std::shared_ptr<const study::Trainer>()>& make_trainer,
+  void serve(const std::function<std::shared_ptr<const networks::Trainer>()>& make_trainer,
              const std::stop_token& stop) const;
 
  private:

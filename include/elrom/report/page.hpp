@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "elrom/networks/trial_store.hpp"
 #include "elrom/report/accuracy.hpp"
 #include "elrom/report/cost.hpp"
 #include "elrom/report/learning_curve.hpp"
-#include "elrom/study/trial_store.hpp"
 
 namespace elrom::report {
 
@@ -17,7 +17,7 @@ namespace elrom::report {
 struct PageExtras {
   std::optional<LearningCurve> learning_curve;
   std::optional<CostReport> cost;
-  std::vector<study::TrialStore::Search> searches;
+  std::vector<networks::TrialStore::Search> searches;
 };
 
 /// What lies in the study's directory: learning-curve.json,

@@ -20,27 +20,27 @@
 
 #include "elrom/base/log.hpp"
 #include "elrom/field/snapshot_store.hpp"
-#include "elrom/study/banding.hpp"
-#include "elrom/study/method.hpp"
-#include "elrom/study/networks_method.hpp"
+#include "elrom/io/stage_cache.hpp"
+#include "elrom/methods/method.hpp"
+#include "elrom/methods/networks_method.hpp"
+#include "elrom/networks/banding.hpp"
+#include "elrom/networks/trainer.hpp"
 #include "elrom/study/settings.hpp"
-#include "elrom/study/stage_cache.hpp"
-#include "elrom/study/trainer.hpp"
 
 namespace elrom::study {
 
 /// What a study builds with beside its own methods; filled by the program.
 struct Toolbox {
-  std::shared_ptr<const Trainer> trainer;  ///< nullptr: LibTorch was left out of this build
-  const Workers* workers =
+  std::shared_ptr<const networks::Trainer> trainer;  ///< nullptr: LibTorch was left out of this build
+  const networks::Workers* workers =
       nullptr;  ///< other processes that train too; may be missing, else outlives the study
 };
 
 /// What a run found for one field.
 struct FieldOutcome {
   std::string field, method;
-  double cross_validated_nrmse = 0;  ///< against the training mean, 1 = no skill
-  std::vector<Band> bands;           ///< screen and search only
+  double cross_validated_nrmse = 0;   ///< against the training mean, 1 = no skill
+  std::vector<networks::Band> bands;  ///< screen and search only
 };
 
 /// Thread rule: one thread at a time; settings.n_threads() is used inside.
@@ -60,7 +60,7 @@ class Study {
 
   [[nodiscard]] const Settings& settings() const;
   [[nodiscard]] const field::SnapshotStore& store() const;
-  [[nodiscard]] const CaseSet& cases() const;
+  [[nodiscard]] const field::CaseSet& cases() const;
   /// Held-out rows of the store.
   [[nodiscard]] const std::vector<std::size_t>& held_out() const;
   /// Retraining: fit() takes the networks' bands and hyperparameters of these earlier cases, where the fast
@@ -74,7 +74,7 @@ class Study {
 
 /// Cases of a store that a study builds with: its held-out cases left out, its mirrors resolved.
 /// Mirrors that the settings name must resolve; the shipped furnace's are used where they do.
-[[nodiscard]] CaseSet study_cases(const field::SnapshotStore& store, const Settings& settings,
-                                  const std::vector<std::size_t>& rows, Log& log);
+[[nodiscard]] field::CaseSet study_cases(const field::SnapshotStore& store, const Settings& settings,
+                                         const std::vector<std::size_t>& rows, Log& log);
 
 }  // namespace elrom::study

@@ -11,12 +11,12 @@
 #include <memory>
 #include <string>
 
-#include "elrom/study/trainer.hpp"
+#include "elrom/networks/trainer.hpp"
 
 namespace elrom::torch {
 
 /// @param device "cpu", "cuda", "cuda:1" ... @throws UsageError for another name, NotBuiltError for a device
 ///               that this LibTorch does not have
-[[nodiscard]] std::unique_ptr<study::Trainer> make_torch_trainer(const std::string& device = "cpu");
+[[nodiscard]] std::unique_ptr<networks::Trainer> make_torch_trainer(const std::string& device = "cpu");
 
 }  // namespace elrom::torch

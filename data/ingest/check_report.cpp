@@ -1,0 +1,30 @@
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/version.hpp"
+#include "elrom/ingest/check.hpp"
+
+namespace elrom::ingest {
+
+std::string to_json(const Checker& checker, std::span<const Finding> findings) {
+  using nlohmann::ordered_json;
+  ordered_json report{{"kind", "elrom-check"}, {"format", {1, 0}}, {"program", program_version()}};
+  report["cases"] = ordered_json::array();
+  for (const auto& one : checker.cases()) report["cases"].push_back(one.name);
+  report["findings"] = ordered_json::array();
+  std::map<std::string, int> counts{{"note", 0}, {"suspicious", 0}, {"wrong", 0}};
+  for (const auto& finding : findings) {
+    ++counts[std::string(name_of(finding.severity))];
+    ordered_json entry{{"kind", finding.kind},
+                       {"severity", name_of(finding.severity)},
+                       {"case", finding.case_name},
+                       {"quantity", finding.quantity}};
+    if (finding.cell >= 0) entry["cell"] = finding.cell;
+    entry["message"] = finding.message;
+    report["findings"].push_back(std::move(entry));
+  }
+  report["counts"] = counts;
+  // Names come from files and may be no UTF-8.
+  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elrom::ingest

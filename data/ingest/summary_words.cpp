@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include "elrom/base/text.hpp"
+#include "elrom/ingest/store_summary.hpp"
+
+namespace elrom::ingest {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string shown(const Json& value, int digits = 4) {
+  return value.is_number() ? base::rounded(value.get<double>(), digits) : "-";
+}
+
+std::string percent(const Json& load) {
+  return load.is_number() ? fmt::format("{:.1f} %", 100 * load.get<double>()) : "-";
+}
+
+std::string mesh_words(const Json& mesh) {
+  const auto& box = mesh["centres_m"];
+  const auto side = [&](const char* axis) {
+    return shown(box[axis]["min"], 3) + " to " + shown(box[axis]["max"], 3);
+  };
+  return fmt::format(
+      "{} planes x {} columns = {} cells, {} m3\n  cell centres: x {} m, y {} m, z {} m\n  digest {}\n",
+      mesh["n_planes"].get<std::size_t>(), mesh["n_columns"].get<std::size_t>(),
+      mesh["n_cells"].get<std::size_t>(), shown(mesh["volume_m3"], 6), side("x"), side("y"), side("z"),
+      mesh["digest"].get<std::string>());
+}
+
+std::string range_table(const Json& entries, const char* heading) {
+  std::string text =
+      fmt::format("\n{:<30}{:<8}{:>12}{:>12}{:>12}\n", heading, "unit", "least", "mean", "most");
+  for (const auto& entry : entries) {
+    text += fmt::format("{:<30}{:<8}{:>12}{:>12}{:>12}\n", entry["name"].get<std::string>(),
+                        entry["unit"].get<std::string>(), shown(entry["min"]), shown(entry["mean"]),
+                        shown(entry["max"]));
+  }
+  return text;
+}
+
+std::string value_table(const Json& inputs) {
+  std::string text;
+  if (!inputs.empty()) text = fmt::format("\n{:<30}{:<8}{:>12}\n", "boundary condition", "unit", "value");
+  for (const auto& input : inputs) {
+    text += fmt::format("{:<30}{:<8}{:>12}\n", input["name"].get<std::string>(),
+                        input["unit"].get<std::string>(), shown(input["value"], 6));
+  }
+  return text;
+}
+
+std::string store_words(const Json& store) {
+  const auto n = store["n_cases"].get<std::size_t>();
+  std::string text =
+      fmt::format("snapshot store {}: {} {}, loads {} to {}\nmesh: ", store["path"].get<std::string>(), n,
+                  n == 1 ? "case" : "cases", percent(store["load"]["min"]), percent(store["load"]["max"]));
+  text += mesh_words(store["mesh"]);
+  text += range_table(store["inputs"], "boundary condition") + range_table(store["fields"], "field");
+  text += fmt::format("\n{:<30}{:>8}{:>12}  {}\n", "case", "load", "averaged", "from");
+  for (const auto& one : store["cases"]) {
+    text += fmt::format("{:<30}{:>8}{:>10} s  {}\n", one["name"].get<std::string>(), percent(one["load"]),
+                        shown(one["averaging_window_s"]), one["source"].get<std::string>());
+  }
+  return text + "digest " + store["digest"].get<std::string>() + "\n";
+}
+
+std::string case_words(const Json& one) {
+  const auto& box = one["centres_m"];
+  const auto side = [&](const char* axis) {
+    return shown(box[axis]["min"], 3) + " to " + shown(box[axis]["max"], 3);
+  };
+  std::string text =
+      fmt::format("case {}: load {}, averaged over {} s, {} cells\n  cell centres: x {} m, y {} m, z {} m\n",
+                  one["name"].get<std::string>(), percent(one["load"]), shown(one["averaging_window_s"]),
+                  one["n_cells"].get<std::size_t>(), side("x"), side("y"), side("z"));
+  text += value_table(one["inputs"]);
+  return text + range_table(one["fields"], "field") + "digest " + one["digest"].get<std::string>() + "\n";
+}
+
+std::string bundle_words(const Json& bundle) {
+  std::string text =
+      fmt::format("model of method '{}', trained on {} cases\nmesh: ", bundle["method"].get<std::string>(),
+                  bundle["cases"].size());
+  text += mesh_words(bundle["mesh"]);
+  text += fmt::format("\n{:<30}{:<8}{}\n", "field", "unit", "predicted by");
+  for (const auto& field : bundle["fields"]) {
+    text += fmt::format("{:<30}{:<8}{}\n", field["name"].get<std::string>(), field["unit"].get<std::string>(),
+                        field["model"].get<std::string>());
+  }
+  text += fmt::format("\n{:<30}{}\n", "boundary condition", "unit");
+  for (const auto& input : bundle["inputs"]) {
+    text += fmt::format("{:<30}{}\n", input["name"].get<std::string>(), input["unit"].get<std::string>());
+  }
+  text += "\nmade from\n";
+  for (const auto& [key, value] : bundle["provenance"].items()) {
+    text += fmt::format("  {:<28}{}\n", key, value.get<std::string>());
+  }
+  return text + "digest " + bundle["digest"].get<std::string>() + "\n";
+}
+
+std::string prediction_words(const Json& one) {
+  std::string text = fmt::format(
+      "prediction of case {}: load {}, {} planes{}\n", one["case"].get<std::string>(), percent(one["load"]),
+      one["n_planes"].get<std::size_t>(), one["profiles"].get<bool>() ? ", averages of each" : "");
+  text += fmt::format("validity: {} ({})\n", one["validity"].get<std::string>(),
+                      one["validity_reason"].get<std::string>());
+  text += fmt::format("model of method '{}', {} of the builds, by {}\n", one["method"].get<std::string>(),
+                      one["builds"].get<std::string>(), one["bundle_program"].get<std::string>());
+  if (one["interval_level"].is_number())
+    text += "with intervals of level " + shown(one["interval_level"]) + "\n";
+  text += value_table(one["inputs"]) + range_table(one["fields"], "field");
+  return text + "bundle digest " + one["bundle_digest"].get<std::string>() + "\n";
+}
+
+}  // namespace
+
+std::string in_words(const Json& description) {
+  const auto kind = description["kind"].get<std::string>();
+  if (kind == "store") return store_words(description);
+  if (kind == "mesh") return "reduced mesh: " + mesh_words(description);
+  if (kind == "bundle") return bundle_words(description);
+  if (kind == "prediction") return prediction_words(description);
+  return case_words(description);
+}
+
+}  // namespace elrom::ingest

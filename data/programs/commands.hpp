@@ -1,0 +1,19 @@
+#pragma once
+// The subcommands of elrom-data, one file each (command_<name>.cpp); elrom_data.cpp puts them together.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace elrom::programs {
+
+/// What the chosen subcommand does once the command line is read; the result is the exit status.
+using Work = std::function<int()>;
+
+// Each adds its subcommand to the program; `chosen` is set to its work when the user calls it.
+void add_import(CLI::App& program, Work& chosen);
+void add_mesh(CLI::App& program, Work& chosen);
+void add_inspect(CLI::App& program, Work& chosen);
+void add_check(CLI::App& program, Work& chosen);
+void add_generate(CLI::App& program, Work& chosen);
+
+}  // namespace elrom::programs

@@ -1,0 +1,37 @@
+// elrom-data: CFD results into snapshot stores. Each subcommand lies in its own command_<name>.cpp.
+
+#include "commands.hpp"
+#include "elrom/base/app.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/version.hpp"
+
+namespace {
+
+using elrom::ExitStatus;
+
+int run(int argc, char** argv) {
+  CLI::App program("ELROM: prepare CFD results for training.", "elrom-data");
+  program.set_version_flag("--version", elrom::program_version());
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(34);
+  elrom::programs::Work chosen;
+  elrom::programs::add_import(program, chosen);
+  elrom::programs::add_inspect(program, chosen);
+  elrom::programs::add_check(program, chosen);
+  elrom::programs::add_mesh(program, chosen);
+  elrom::programs::add_generate(program, chosen);
+  program.footer(
+      "Exit status: 0 done, 2 wrong command line, 3 wrong input, 1 trouble of the machine, 130 interrupted.");
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
+  }
+  return chosen();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return elrom::base::run_app("elrom-data", [&] { return run(argc, argv); });
+}

@@ -1,0 +1,50 @@
+#pragma once
+// The command line of elrom-predict.
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace elrom::fields {
+
+enum class Format { hdf, csv, txt, ip };
+
+struct Arguments {
+  std::filesystem::path bundle;
+  std::filesystem::path cases;             ///< empty: one case from `settings` alone
+  std::vector<std::string> case_patterns;  ///< empty: all cases of the table
+  std::vector<std::string> settings;       ///< "name=value [unit]"
+  std::string name = "case";               ///< of the case made from settings alone
+  std::string output = ".";                ///< folder, or "-" for standard output
+  std::vector<Format> formats;             ///< at least one
+  std::vector<std::string> fields;
+  std::string planes;  ///< "0:10,20"; empty: all
+  std::string region;  ///< "x0:x1,y0:y1,z0:z1" in m; empty: all
+  bool best_build_only = false;
+  std::optional<double> level;  ///< of the prediction intervals
+  bool profile = false;
+  bool strict = false;
+  bool audit = false;     ///< physics audit of every case, in the terminal and the file
+  bool conserve = false;  ///< smallest change to the input inventory and the inlets' gas flow
+  bool timing = false;
+  bool verify = true;
+  bool sync = true;   ///< wait until a file is on the disk before it gets its name
+  int n_threads = 0;  ///< 0: all
+
+  [[nodiscard]] bool to_standard_output() const { return output == "-"; }
+  [[nodiscard]] bool writes(Format format) const {
+    return std::find(formats.begin(), formats.end(), format) != formats.end();
+  }
+};
+
+struct ParsedArguments {
+  Arguments arguments;
+  std::optional<int> exit_status;  ///< set when there is nothing left to do (--help, --version)
+};
+
+/// @throws UsageError for whatever the command line does not allow
+[[nodiscard]] ParsedArguments parse_arguments(int argc, const char* const* argv);
+
+}  // namespace elrom::fields

@@ -1,0 +1,58 @@
+#pragma once
+// Method "auto": per field, and per band of columns where that pays, the
+// candidate or the blend of candidates that predicts cases best that it has not
+// seen, found by load-grouped cross-validation on training cases only.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "elrom/methods/method.hpp"
+#include "elrom/networks/settings.hpp"
+
+namespace elrom::methods {
+
+struct AutoOptions {
+  std::size_t n_folds = 8;
+  /// A blend whose weights are learned without a fold must be better in it than the best member by this share
+  /// of the member's error, or that member alone is taken: each further member costs time at every
+  /// prediction. Weights for each band must be better by the same share than those for the whole field.
+  double least_gain = 0.01;
+  /// Limits between bands of columns: mean squared error of the best candidate over the column's variance.
+  std::vector<double> band_edges = networks::BandSettings{}.edges;
+};
+
+struct CandidateScore {
+  std::string name;
+  double nrmse = 0;  ///< cross-validated, against the mean of the cases; NaN: failed
+  std::vector<double> weights =
+      {};  ///< in the final model: (n_columns), or one for all; empty: no part of it
+  std::string failure = {};
+
+  [[nodiscard]] double mean_weight() const;
+};
+
+struct AutoFit {
+  std::shared_ptr<const model::FieldModel> model;  ///< fitted on all the cases
+  std::vector<CandidateScore> candidates;          ///< in the order given
+  double nrmse = 0;  ///< cross-validated, of the final model: a blend's weights are those of the other folds
+  double nrmse_by_band = 0;  ///< the same, had each band weights of its own; NaN: all columns in one band
+};
+
+/// A candidate that throws NumericalError loses and is told to
+/// the log; when all do, the first error is thrown.
+/// @param cases rows to learn from; at least two
+[[nodiscard]] AutoFit fit_auto(const field::FieldData& data, std::span<const std::size_t> cases,
+                               std::span<const Method* const> candidates, const AutoOptions& options,
+                               const FitContext& context);
+
+/// Weights >= 0 with sum 1 that minimise the squared error of sum_i weight_i * prediction_i, from the
+/// candidates' Gram matrix of errors, G_ij = sum of error_i * error_j (n, n).
+[[nodiscard]] std::vector<double> blend_weights(const Eigen::MatrixXd& error_gram);
+
+/// Square root of the sum of squared errors over that of the rows' deviations from their mean.
+[[nodiscard]] double cross_validated_nrmse(const field::FieldData& data, std::span<const std::size_t> cases,
+                                           const MatrixF& residuals);
+
+}  // namespace elrom::methods

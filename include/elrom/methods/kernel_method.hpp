@@ -1,0 +1,29 @@
+#pragma once
+// Method "kernel": one kernel smoother a field on derived inputs, for the symmetric and
+// each antisymmetric part of the field on its own. Hyperparameters, and how far every
+// wavelength and every cell is trusted, minimise the leave-one-case-out error in closed
+// form (Allen 1974; Craven & Wahba 1979 for linear smoothers).
+//
+// Why it does better than POD with a process a mode on few cases: mirror images are
+// used exactly instead of by augmentation; all modes share one covariance with few,
+// physical inputs; noise that no input explains is shrunk.
+
+#include <memory>
+
+#include "elrom/methods/method.hpp"
+
+namespace elrom::methods {
+
+struct KernelOptions {
+  double dropped =
+      1e-3;  ///< energy that truncating the modes of a part may drop, as a share of the error's energy
+  std::size_t most_modes = 40;  ///< for the symmetric part; an antisymmetric part has at most a quarter of it
+  int passes = 2;  ///< searches; from the second on, errors are weighted by what the first one trusts
+  bool antisymmetric = true;  ///< learn the antisymmetric parts too, instead of predicting none
+  bool shrink = true;         ///< spectral and cell-wise shrinkage
+};
+
+/// fit() may run on several threads at a time.
+[[nodiscard]] std::unique_ptr<Method> make_kernel_method(const KernelOptions& options = {});
+
+}  // namespace elrom::methods

@@ -1,0 +1,48 @@
+#pragma once
+// A method learns one field from cases and gives back a model::FieldModel; networks and peers alike.
+
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "elrom/base/log.hpp"
+#include "elrom/base/random.hpp"
+#include "elrom/field/case_set.hpp"
+#include "elrom/model/field_model.hpp"
+#include "elrom/networks/workers.hpp"
+
+namespace elrom::methods {
+
+struct FitContext {
+  base::Seed seed{1};
+  int n_threads = 1;
+  Log* log = &silent_log();
+  std::stop_token stop;
+  const networks::Workers* workers = nullptr;  ///< other processes that train too; may be missing
+
+  /// Trainings that run side by side: each takes one thread, here or in another process.
+  [[nodiscard]] int n_trainings() const { return workers == nullptr ? n_threads : workers->n_units(); }
+};
+
+/// Groups of case rows that leave the training set together in
+/// cross-validation (neighbouring loads do not leak).
+using Folds = std::vector<std::vector<std::size_t>>;
+
+/// Thread rule: const use from one thread at a time; n_threads of the context is used inside.
+class Method {
+ public:
+  virtual ~Method() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// Learns from the rows `cases` of `data` alone.
+  [[nodiscard]] virtual std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
+                                                               std::span<const std::size_t> cases,
+                                                               const FitContext& context) const = 0;
+  /// Predictions for every case in `folds` by models that did not see its fold, (n_cases, n_cells) with rows
+  /// of cases in no fold left zero. The default fits once a fold; methods with a closed form override it.
+  [[nodiscard]] virtual MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
+                                              const FitContext& context) const;
+};
+
+}  // namespace elrom::methods

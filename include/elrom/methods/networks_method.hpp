@@ -1,0 +1,83 @@
+#pragma once
+// The source's method for one field: screen every column, sort the columns into bands, search each band's
+// hyperparameters, build each band's network several times.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "elrom/io/stage_cache.hpp"
+#include "elrom/methods/method.hpp"
+#include "elrom/model/banded_networks.hpp"
+#include "elrom/networks/banding.hpp"
+#include "elrom/networks/records.hpp"
+#include "elrom/networks/settings.hpp"
+#include "elrom/networks/trainer.hpp"
+#include "elrom/networks/trial_store.hpp"
+
+namespace elrom::methods {
+
+/// What screening, banding and search decided for one field.
+struct NetworkPlan {
+  std::vector<networks::Band> bands;
+  std::vector<networks::Hyperparameters> hyperparameters;  ///< of each band
+  networks::ScreeningResult screening;
+};
+
+class NetworksMethod final : public Method {
+ public:
+  /// @param trainer may be missing for screening alone @param cache, trials may be missing: nothing is kept.
+  /// All must outlive the method.
+  NetworksMethod(networks::Settings settings, std::shared_ptr<const networks::Trainer> trainer,
+                 const io::StageCache* cache = nullptr, networks::TrialStore* trials = nullptr);
+
+  [[nodiscard]] std::string name() const override { return "networks"; }
+  [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
+                                                       std::span<const std::size_t> cases,
+                                                       const FitContext& context) const override;
+  /// Bands and hyperparameters are those of all cases in the folds; the networks of a fold have not seen its
+  /// cases. At most two builds a band.
+  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
+                                      const FitContext& context) const override;
+
+  /// The stages before the fit; each from the cache where it is valid.
+  [[nodiscard]] networks::ScreeningResult screen_field(const field::FieldData& data,
+                                                       std::span<const std::size_t> cases,
+                                                       const FitContext& context) const;
+  [[nodiscard]] NetworkPlan plan(const field::FieldData& data, std::span<const std::size_t> cases,
+                                 const FitContext& context) const;
+
+  /// Later calls take bands and hyperparameters from here instead of screening and searching: retraining when
+  /// a few cases were added.
+  void keep_plan(const std::string& field, NetworkPlan plan);
+  void forget_plan(const std::string& field) { kept_.erase(field); }
+  /// The closed-form screen on the same records, whatever screen.method says; cheap, not kept.
+  [[nodiscard]] networks::ScreeningResult fast_screen(const field::FieldData& data,
+                                                      std::span<const std::size_t> cases,
+                                                      const FitContext& context) const;
+
+ private:
+  [[nodiscard]] std::vector<networks::Part> split(const field::FieldData& data,
+                                                  std::span<const std::size_t> cases,
+                                                  const FitContext& context) const;
+  [[nodiscard]] networks::RecordSet screening_records(const field::FieldData& data,
+                                                      std::span<const std::size_t> cases,
+                                                      const FitContext& context) const;
+  [[nodiscard]] networks::RecordOptions record_options(const std::string& field) const;
+  [[nodiscard]] std::vector<model::Submodel> build(const field::FieldData& data, const NetworkPlan& plan,
+                                                   const networks::RecordSet& set, const std::string& digest,
+                                                   int n_builds, const FitContext& context,
+                                                   int n_threads) const;
+  [[nodiscard]] std::unique_ptr<model::FieldModel> assemble(const field::FieldData& data,
+                                                            networks::RecordSet set,
+                                                            std::vector<model::Submodel> submodels) const;
+
+  networks::Settings settings_;
+  std::shared_ptr<const networks::Trainer> trainer_;
+  const io::StageCache* cache_;
+  io::StageCache no_cache_;
+  networks::TrialStore* trials_;
+  std::map<std::string, NetworkPlan> kept_;
+};
+
+}  // namespace elrom::methods

@@ -1,0 +1,45 @@
+#pragma once
+// Records of one field: one plane of one case each, standardised
+// (source: eq. 6.1). Internal to the networks' method.
+
+#include "elrom/field/case_set.hpp"
+#include "elrom/model/banded_networks.hpp"
+#include "elrom/networks/banding.hpp"
+#include "elrom/networks/screening.hpp"
+#include "elrom/networks/trainer.hpp"
+
+namespace elrom::networks {
+
+/// What scales the inputs beside their standard deviation: nothing, the weights of a ridge fit, or the
+/// inverse length scales of a Gaussian process (ARD).
+enum class Relevance { none, linear, gp };
+
+struct RecordOptions {
+  model::PlaneEncodingKind encoding = model::PlaneEncodingKind::index;
+  model::TransformKind transform = model::TransformKind::none;
+  bool scale_cells = false;  ///< targets standardised cell by cell instead of column by column
+  bool mirrors = false;      ///< mirror images of the training records are training records too
+  Relevance relevance = Relevance::none;
+};
+
+struct RecordSet {
+  model::InputScaler inputs;
+  model::PlaneEncoding planes;
+  model::TargetTransform transform;
+  model::OutputScaler outputs;
+  ScreeningData records;  ///< inputs: scaled boundary conditions, then the plane's encoding
+};
+
+/// @param part (cases.size() * n_planes), case by case. Scalers see cases with a training record only.
+[[nodiscard]] RecordSet make_records(const field::FieldData& data, std::span<const std::size_t> cases,
+                                     const std::vector<Part>& part, const RecordOptions& options);
+
+/// Records and columns of one band; with a mask, records of
+/// planes that the band does not answer for are left out.
+[[nodiscard]] TrainingProblem make_problem(const ScreeningData& records, const Band& band);
+
+/// How much each standardised input moves the field's principal components: 1 for the strongest input, at
+/// least 0.1; empty for none.
+[[nodiscard]] std::vector<double> relevance_of(Relevance kind, const MatrixD& inputs, const MatrixF& values);
+
+}  // namespace elrom::networks

@@ -1,0 +1,31 @@
+#pragma once
+// Which records build, which stop the building, which judge it: 70 / 20 / 10 % of the cases that are not held
+// out. By case the planes of one case stay together; by record they do not, which leaks and exists to show
+// that it does.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "elrom/base/random.hpp"
+#include "elrom/networks/settings.hpp"
+
+namespace elrom::networks {
+
+enum class Part : std::uint8_t { train, validation, test };
+
+/// Part of every case: cases are ordered by load and dealt out stratum by stratum, so that each part spans
+/// the loads. Every part that has a fraction above 0 gets a case where there are at least three; with two,
+/// one of them both stops and judges (Part::validation). NaN loads come last.
+[[nodiscard]] std::vector<Part> split_cases(std::span<const double> loads, std::span<const double> fractions,
+                                            base::Seed seed);
+
+/// Part of every record, (n_cases * n_planes), case by case.
+[[nodiscard]] std::vector<Part> split_records(std::span<const double> loads, std::size_t n_planes,
+                                              const SplitSettings& settings, base::Seed seed);
+
+}  // namespace elrom::networks

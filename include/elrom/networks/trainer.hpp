@@ -1,0 +1,78 @@
+#pragma once
+// The seam between the study and the machine that trains one network: the search is tested with a fake
+// trainer, and LibTorch's headers stay in train/torch.
+
+#include <filesystem>
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "elrom/base/log.hpp"
+#include "elrom/base/random.hpp"
+#include "elrom/math/matrix.hpp"
+#include "elrom/model/network.hpp"
+
+namespace elrom::networks {
+
+struct Hyperparameters {
+  double learning_rate = 1e-3;
+  int n_layers = 2;  ///< hidden layers
+  int n_units = 64;  ///< in each hidden layer
+  int batch_size = 64;
+  double weight_decay = 0;  ///< decoupled (AdamW)
+  double dropout = 0;
+  model::Activation activation = model::Activation::relu;
+  bool operator==(const Hyperparameters&) const = default;
+};
+
+struct TrainingBudget {
+  int max_epochs = 200;
+  int patience = 20;  ///< epochs without a better validation error before stopping
+};
+
+/// Standardised records. With a mask only the masked-in targets count: mask(record's plane, output).
+struct TrainingProblem {
+  MatrixF train_inputs, train_targets;            //!< (n_train, n_in), (n_train, n_out)
+  MatrixF validation_inputs, validation_targets;  //!< (n_validation, ...)
+  MatrixF train_weights, validation_weights;      //!< 0 or 1 for every target, same shape; empty: all count
+};
+
+/// Told the validation error after each epoch.
+class TrainingMonitor {
+ public:
+  virtual ~TrainingMonitor() = default;
+  /// @param epoch ended epochs, from 1
+  /// @return false to give this training up (pruned)
+  virtual bool keep_going(int epoch, double validation_mse) = 0;
+};
+
+struct TrainingResult {
+  model::Network network;     ///< the weights of the best epoch; empty when diverged
+  double validation_mse = 0;  ///< of the best epoch, standardised units
+  double train_mse = 0;
+  int epochs = 0;
+  bool pruned = false;
+  bool diverged = false;  ///< a loss that was not finite: the trial loses, never a NaN winner (scores are the
+                          ///< largest finite number)
+  bool backed_off =
+      false;  ///< after a first such loss it was begun again at a tenth of the rate: tell the user
+};
+
+/// Warns when a training diverged: it is lost, or was begun again at a tenth of its rate.
+void tell_divergence(const TrainingResult& result, const std::string& network, Log& log);
+
+/// Thread rule: train() may run on several threads at a time; each call uses one thread.
+class Trainer {
+ public:
+  virtual ~Trainer() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// The same arguments give the same bits. @param checkpoint file to resume from and to save to; empty: none
+  /// @throws Interrupted on `stop`
+  [[nodiscard]] virtual TrainingResult train(const TrainingProblem& problem,
+                                             const Hyperparameters& hyperparameters,
+                                             const TrainingBudget& budget, base::Seed seed,
+                                             TrainingMonitor* monitor, const std::stop_token& stop,
+                                             const std::filesystem::path& checkpoint = {}) const = 0;
+};
+
+}  // namespace elrom::networks

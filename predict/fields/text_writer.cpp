@@ -1,0 +1,141 @@
+#include "text_writer.hpp"
+
+#include <array>
+#include <charconv>
+#include <map>
+
+#include "elrom/base/text.hpp"
+#include "elrom/base/version.hpp"
+
+namespace elrom::fields {
+namespace {
+
+/// Shortest text that reads back to the same float.
+void add_shortest(std::string& text, float value) {
+  std::array<char, 32> buffer;
+  text.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
+}
+
+void add_whole(std::string& text, std::int32_t value) {
+  std::array<char, 16> buffer;
+  text.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
+}
+
+/// Scientific with `digits` behind the point, right-aligned in `width`.
+void add_scientific(std::string& text, float value, int digits, std::size_t width) {
+  std::array<char, 48> buffer;
+  const auto* end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                  std::chars_format::scientific, digits)
+                        .ptr;
+  const auto length = static_cast<std::size_t>(end - buffer.data());
+  if (length < width) text.append(width - length, ' ');
+  text.append(buffer.data(), length);
+}
+
+/// A column of a table: its heading and the values of all rows, `stride` apart.
+struct Column {
+  std::string name, unit;
+  const float* values;
+  std::size_t stride;
+};
+
+std::vector<Column> columns_of(const Run& run, const Prediction& prediction) {
+  std::vector<Column> columns;
+  if (run.average) {
+    columns.push_back({"z", "m", run.average->heights().data(), 1});
+  } else {
+    const char* axes[] = {"x", "y", "z"};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      columns.push_back({axes[axis], "m", run.geometry.centre.data() + axis, 3});
+  }
+  for (std::size_t i = 0; i < run.fields.size(); ++i) {
+    columns.push_back(
+        {run.fields[i].name, run.fields[i].unit, prediction.field(prediction.values, run, i).data(), 1});
+  }
+  for (std::size_t i = 0; run.level && i < run.fields.size(); ++i) {
+    columns.push_back({run.fields[i].name + "_half_width", run.fields[i].unit,
+                       prediction.field(prediction.half_width, run, i).data(), 1});
+  }
+  return columns;
+}
+
+/// Fluent's own names where it has them; solids are named alike (rename them for the phase names of a case).
+std::string fluent_name(const std::string& name) {
+  static const std::map<std::string, std::string> names{
+      {"gas_velocity_x", "x-velocity"},          {"gas_velocity_y", "y-velocity"},
+      {"gas_velocity_z", "z-velocity"},          {"solid_velocity_x", "solids-x-velocity"},
+      {"solid_velocity_y", "solids-y-velocity"}, {"solid_velocity_z", "solids-z-velocity"},
+      {"solid_volume_fraction", "solids-vof"},   {"solid_diameter", "solids-diameter"}};
+  const auto known = names.find(name);
+  return known != names.end() ? known->second : name;
+}
+
+void add_comment(const Run& run, const Prediction& prediction, std::string& text) {
+  text += "# ELROM prediction for SFW3D, format 1.0\n# program " + program_version() + ", bundle " +
+          run.bundle_digest + "\n";
+  text += "# case " + prediction.inputs->name + "\n# validity " +
+          std::string(model::name_of(prediction.assessment->verdict)) + ": " + prediction.assessment->reason +
+          "\n";
+  if (run.level) text += "# half-widths of prediction intervals of level " + base::number(*run.level) + "\n";
+  if (prediction.change == nullptr) return;
+  for (const auto& line : base::split(model::to_text(*prediction.change), '\n'))
+    if (!line.empty()) text += "# conserved: " + line + "\n";
+}
+
+}  // namespace
+
+void write_csv(const Run& run, const Prediction& prediction, std::string& text) {
+  const auto columns = columns_of(run, prediction);
+  text += run.average ? "plane" : "plane,column";
+  for (const auto& column : columns) text += "," + column.name + " [" + column.unit + "]";
+  text += '\n';
+  const auto n_columns = static_cast<std::int32_t>(run.cells.n_columns);
+  for (std::size_t row = 0; row < run.n_values(); ++row) {
+    if (run.average) {
+      add_whole(text, run.cells.planes[row]);
+    } else {
+      add_whole(text, run.cells.cells[row] / n_columns);
+      text += ',';
+      add_whole(text, run.cells.cells[row] % n_columns);
+    }
+    for (const auto& column : columns) {
+      text += ',';
+      add_shortest(text, column.values[row * column.stride]);
+    }
+    text += '\n';
+  }
+}
+
+void write_sfw3d(const Run& run, const Prediction& prediction, std::string& text) {
+  constexpr int digits = 7;
+  constexpr std::size_t width = 16;
+  const auto columns = columns_of(run, prediction);
+  add_comment(run, prediction, text);
+  text += "# " + std::to_string(run.n_values()) + (run.average ? " planes" : " cells") + "; columns:";
+  for (const auto& column : columns) text += " " + column.name + "[" + column.unit + "]";
+  text += '\n';
+  for (std::size_t row = 0; row < run.n_values(); ++row) {
+    for (const auto& column : columns)
+      add_scientific(text, column.values[row * column.stride], digits, width);
+    text += '\n';
+  }
+}
+
+void write_fluent(const Run& run, const Prediction& prediction, std::string& text) {
+  constexpr int digits = 9;
+  constexpr std::size_t n_coordinates = 3;
+  const auto columns = columns_of(run, prediction);
+  text += "3\n3\n" + std::to_string(run.n_values()) + "\n" + std::to_string(columns.size() - n_coordinates) +
+          "\n";
+  for (std::size_t i = n_coordinates; i < columns.size(); ++i) text += fluent_name(columns[i].name) + "\n";
+  for (const auto& column : columns) {
+    text += '(';
+    for (std::size_t row = 0; row < run.n_values(); ++row) {
+      add_scientific(text, column.values[row * column.stride], digits, 0);
+      text += '\n';
+    }
+    text += ")\n";
+  }
+}
+
+}  // namespace elrom::fields

@@ -1,0 +1,156 @@
+#include "elrom/methods/auto_method.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "elrom/base/error.hpp"
+#include "elrom/math/statistics.hpp"
+#include "elrom/methods/cross_validation.hpp"
+#include "elrom/methods/peers.hpp"
+#include "support/fake_method.hpp"
+#include "support/throws.hpp"
+#include "support/toy_furnace.hpp"
+
+namespace elrom::methods {
+namespace {
+
+using test::lopsided;
+using test::noise;
+using Fake = test::FakeMethod;
+
+struct Contest {
+  field::CaseSet cases = test::toy_cases(10);
+  field::FieldData data = test::toy_field(cases);
+  AutoFit run(const std::vector<const Method*>& candidates, const AutoOptions& options = {}) {
+    return fit_auto(data, math::all_rows(10), candidates, options, {});
+  }
+};
+
+TEST(BlendWeights, OfIndependentErrorsGoWithInverseVariance) {
+  const Eigen::MatrixXd gram = Eigen::Vector2d(1, 4).asDiagonal();
+
+  const auto weights = blend_weights(gram);
+
+  EXPECT_NEAR(weights[0], 0.8, 1e-9);
+  EXPECT_NEAR(weights[1], 0.2, 1e-9);
+}
+
+TEST(BlendWeights, AreNeverNegative) {
+  Eigen::MatrixXd gram(2, 2);
+  gram << 1, 1.5, 1.5, 4;  // the unconstrained optimum is (1.25, -0.25)
+
+  EXPECT_EQ(blend_weights(gram), (std::vector<double>{1, 0}));
+}
+
+TEST(Auto, TakesTheWinnerAlone) {
+  Contest contest;
+  const MatrixF base = noise(contest.data, "base", 0.1);
+  const Fake good("good", base), bad("bad", 3 * base);
+
+  const AutoFit fit = contest.run({&bad, &good});
+
+  EXPECT_EQ(fit.candidates[0].mean_weight(), 0);
+  EXPECT_EQ(fit.candidates[1].mean_weight(), 1);
+  EXPECT_NEAR(fit.candidates[0].nrmse, 3 * fit.candidates[1].nrmse, 1e-4 * fit.candidates[0].nrmse);
+  EXPECT_EQ(fit.model->kind(), "nearest");
+}
+
+TEST(Auto, BlendsErrorsThatCancel) {
+  Contest contest;
+  const Fake one("one", noise(contest.data, "a", 0.1)), two("two", noise(contest.data, "b", 0.1));
+
+  const AutoFit fit = contest.run({&one, &two});
+
+  EXPECT_NEAR(fit.candidates[0].mean_weight(), 0.5, 0.05);
+  EXPECT_NEAR(fit.nrmse, fit.candidates[0].nrmse / std::sqrt(2), 0.06 * fit.nrmse);
+  EXPECT_EQ(fit.model->kind(), "blend");
+}
+
+TEST(Auto, DoesNotBlendForTheSakeOfOneCase) {
+  // "two" cancels the error of "one" in case 0, where both are far off, and is worse in all the others:
+  // weights fitted to all cases would gain a third, weights learned without case 0 do not see it.
+  Contest contest;
+  MatrixF one = noise(contest.data, "a", 0.1), two = noise(contest.data, "b", 0.5);
+  two.row(0) = -10 * one.row(0);
+  one.row(0) *= 10;
+  const Fake first("one", one), second("two", two);
+
+  const AutoFit fit = contest.run({&first, &second});
+
+  EXPECT_EQ(fit.candidates[0].mean_weight(), 1);
+  EXPECT_EQ(fit.candidates[1].mean_weight(), 0);
+  EXPECT_NEAR(fit.nrmse, fit.candidates[0].nrmse, 1e-9);
+}
+
+TEST(Auto, WeighsBandsByThemselvesWhereThatPays) {
+  // Each is right in its own half; "right" is better on the
+  // whole, and its error sorts columns into two bands.
+  Contest contest;
+  const Fake left("left", 1.1F * lopsided(contest.data, "a", 0.1F)),
+      right("right", lopsided(contest.data, "b", 10));
+
+  const AutoFit fit = contest.run({&left, &right});
+
+  const std::size_t n = contest.cases.mesh.n_columns;
+  ASSERT_EQ(fit.candidates[0].weights.size(), n);
+  EXPECT_EQ(fit.candidates[0].weights.front(), 1);
+  EXPECT_EQ(fit.candidates[0].weights.back(), 0);
+  EXPECT_EQ(fit.candidates[1].weights.front(), 0);
+  EXPECT_EQ(fit.candidates[1].weights.back(), 1);
+  EXPECT_EQ(fit.candidates[0].mean_weight(), 0.5);
+  EXPECT_LT(fit.nrmse, 0.1 * fit.candidates[1].nrmse);
+  EXPECT_EQ(fit.nrmse, fit.nrmse_by_band);
+  EXPECT_EQ(fit.model->kind(), "blend");
+}
+
+TEST(Auto, WeighsAllColumnsAlikeWhereBandsGainNothing) {
+  // Two bands by the error of both, and the same winner in each.
+  Contest contest;
+  const MatrixF base = lopsided(contest.data, "a", 10);
+  const Fake good("good", base), bad("bad", 3 * base);
+
+  const AutoFit fit = contest.run({&bad, &good});
+
+  EXPECT_TRUE(std::isfinite(fit.nrmse_by_band));
+  EXPECT_EQ(fit.candidates[1].weights.size(), 1U);
+  EXPECT_EQ(fit.model->kind(), "nearest");
+}
+
+TEST(Auto, ColumnsThatAllGetRightAskForNoFurtherMembers) {
+  Contest contest;
+  const auto n_columns = static_cast<Eigen::Index>(contest.cases.mesh.n_columns);
+  MatrixF left = 1.1F * lopsided(contest.data, "a", 0.1F), right = lopsided(contest.data, "b", 10),
+          third = 100 * left;
+  for (Eigen::Index c = 0; c < left.cols(); c += n_columns)  // column 0: a band by itself
+    for (MatrixF* errors : {&left, &right, &third}) errors->col(c).setZero();
+  const Fake a("left", left), b("right", right), c("third", third);
+
+  const AutoFit fit = contest.run({&a, &b, &c}, {.band_edges = {1e-9, 0.3}});
+
+  EXPECT_GT(fit.candidates[0].weights.size(), 1U);
+  EXPECT_EQ(fit.candidates[2].mean_weight(), 0);
+}
+
+TEST(Auto, ACandidateThatDivergesOnlyLoses) {
+  Contest contest;
+  const Fake broken("broken", {}), good("good", noise(contest.data, "a", 0.1));
+
+  const AutoFit fit = contest.run({&broken, &good});
+
+  EXPECT_EQ(fit.candidates[0].failure, "it diverged");
+  EXPECT_EQ(fit.candidates[1].mean_weight(), 1);
+  EXPECT_ERROR(NumericalError, "it diverged", contest.run({&broken}));
+}
+
+TEST(Auto, ANanNeverWins) {
+  Contest contest;
+  MatrixF errors = MatrixF::Zero(10, contest.data.values.cols());
+  errors(3, 3) = std::numeric_limits<float>::quiet_NaN();
+  const Fake nan("nan", errors), good("good", noise(contest.data, "a", 0.1));
+
+  EXPECT_EQ(contest.run({&nan, &good}).candidates[0].mean_weight(), 0);
+}
+
+}  // namespace
+}  // namespace elrom::methods

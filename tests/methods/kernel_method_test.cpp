@@ -1,0 +1,210 @@
+#include "elrom/methods/kernel_method.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "elrom/math/kernel.hpp"
+#include "elrom/math/statistics.hpp"
+#include "elrom/methods/cross_validation.hpp"
+#include "elrom/methods/peers.hpp"
+#include "elrom/model/pod_model.hpp"
+#include "leave_one_out.hpp"
+#include "shrinkage.hpp"
+#include "support/toy_furnace.hpp"
+#include "symmetry_classes.hpp"
+
+namespace elrom::methods {
+namespace {
+
+std::vector<float> predict(const model::FieldModel& model, const field::CaseSet& cases,
+                           std::vector<double> inputs) {
+  std::vector<float> values(cases.mesh.n_cells());
+  model::Workspace workspace;
+  predict_case(model, inputs, cases.mesh.n_planes, values, workspace);
+  return values;
+}
+
+double unseen_error(const Method& method, const field::FieldData& data) {
+  const auto rows = math::all_rows(data.cases->n_cases());
+  const MatrixF predicted = method.cross_predict(data, load_grouped_folds(data.cases->loads, rows, 6), {});
+  const Eigen::VectorXd deviation = math::column_moments(data.values, rows).deviation;
+  return std::sqrt((predicted - data.values).cast<double>().squaredNorm() /
+                   (deviation.squaredNorm() * rows.size()));
+}
+
+TEST(SymmetryClasses, ProjectionsAddUpAndAreOrthogonal) {
+  const field::CaseSet cases = test::toy_cases(3);
+  const field::FieldData data = test::toy_field(cases, 0.3);
+  MatrixF sum = MatrixF::Zero(3, data.values.cols());
+  std::vector<MatrixF> parts;
+
+  for (const auto& symmetry : symmetry_classes(2)) {
+    parts.push_back(project(data, math::all_rows(3), symmetry, 1));
+    sum += parts.back();
+  }
+
+  ASSERT_EQ(parts.size(), 4U);
+  EXPECT_TRUE(sum.isApprox(data.values, 1e-6F));
+  EXPECT_NEAR((parts[0] * parts[2].transpose()).cwiseAbs().maxCoeff(), 0, 1e-4F * data.values.squaredNorm());
+}
+
+TEST(SymmetryClasses, InputsFormOrbitsAndForms) {
+  const field::CaseSet cases = test::toy_cases(3);
+  const auto classes = symmetry_classes(2);
+
+  const auto orbits = input_orbits(cases);
+  const model::LinearForm sum = project_input(cases, 0, classes[0]),
+                          share = project_input(cases, 7, classes[0]);
+  const model::LinearForm odd_share = project_input(cases, 7, classes[1]);
+
+  ASSERT_EQ(orbits.size(), 5U);
+  EXPECT_EQ(orbits[0], (std::vector<std::size_t>{0, 1, 2, 3}));
+  EXPECT_EQ(sum.weights, (std::vector<double>{0.25, 0.25, 0.25, 0.25}));
+  EXPECT_TRUE(share.inputs.empty());  // q and 1 - q: one half on average
+  EXPECT_DOUBLE_EQ(odd_share.value(std::vector<double>{0, 0, 0, 0, 0, 0, 0, 0.6}), 0.1);
+}
+
+TEST(LeaveOneOut, ClosedFormEqualsRefits) {
+  const field::CaseSet cases = test::toy_cases(8);
+  const field::FieldData data = test::toy_field(cases, 0.1);
+  const Eigen::MatrixXd y = data.values.cast<double>();
+  const MatrixD z = math::Standardiser(cases.inputs).apply(cases.inputs);
+  const Eigen::MatrixXd k = (-0.05 * (math::squared_distances(z, z))).array().exp();
+  const double noise = 0.2;
+  double squares = 0;
+  for (std::size_t left = 0; left < 8; ++left) {
+    std::vector<Eigen::Index> rest;
+    for (Eigen::Index i = 0; i < 8; ++i) {
+      if (i != static_cast<Eigen::Index>(left)) rest.push_back(i);
+    }
+    Eigen::MatrixXd part = k(rest, rest);
+    part.diagonal().array() += noise;
+    const Eigen::MatrixXd others = y(rest, Eigen::all);
+    const Eigen::RowVectorXd row = k(static_cast<Eigen::Index>(left), rest);
+    const Eigen::MatrixXd solved = part.inverse() * others;
+    squares += (y.row(static_cast<Eigen::Index>(left)) - row * solved).squaredNorm();
+  }
+
+  EXPECT_NEAR(leave_one_out_error(k, noise, y * y.transpose()), squares, 1e-8 * squares);
+}
+
+TEST(LeaveOneOut, SlopeEqualsDifferences) {
+  const MatrixD z = math::Standardiser(test::toy_cases(6).inputs).apply(test::toy_cases(6).inputs);
+  const Eigen::MatrixXd k = (-0.05 * (math::squared_distances(z, z))).array().exp();
+  const Eigen::MatrixXd y = z.leftCols(3), gram = y * y.transpose();
+  Eigen::MatrixXd slope;
+  static_cast<void>(leave_one_out_error(k, 0.3, gram, &slope));
+  const double h = 1e-6;
+
+  Eigen::MatrixXd up = k, down = k;
+  up(1, 4) += h, up(4, 1) += h;
+  down(1, 4) -= h, down(4, 1) -= h;
+  const double difference =
+      (leave_one_out_error(up, 0.3, gram) - leave_one_out_error(down, 0.3, gram)) / (2 * h);
+
+  EXPECT_NEAR(slope(1, 4) + slope(4, 1), difference, 1e-6 * std::abs(difference) + 1e-8);
+}
+
+TEST(Shrinkage, KeepsSignalAndRemovesNoise) {
+  const std::array<std::size_t, 3> box{16, 8, 8};
+  base::Random random(base::Seed(9));
+  MatrixF truth(20, 1024), deviations(20, 1024);
+  for (Eigen::Index i = 0; i < 20; ++i) {
+    const double amplitude = random.normal();
+    for (Eigen::Index c = 0; c < 1024; ++c) {
+      truth(i, c) = static_cast<float>(amplitude * std::cos(static_cast<double>(c / 64) / 5));
+      deviations(i, c) = truth(i, c) + static_cast<float>(0.5 * random.normal());
+    }
+  }
+  const float before = (deviations - truth).norm();
+  Shrinkage shrinkage(box);
+
+  MatrixF shrunk = deviations;
+  shrinkage.learn(shrunk, truth, {}, 2);
+  shrinkage.apply(deviations, 1);
+
+  EXPECT_LT((shrunk - truth).norm(), 0.3F * before);
+  EXPECT_TRUE(shrunk.isApprox(deviations, 1e-5F));  // apply() does what learn() did
+}
+
+TEST(Shrinkage, FindsTheBoxOfTheMesh) {
+  EXPECT_EQ(box_of(test::toy_cases(2).mesh), (std::array<std::size_t, 3>{8, 6, 4}));
+}
+
+TEST(KernelMethod, BeatsThePeersOnASymmetricFurnace) {
+  const field::CaseSet cases = test::toy_cases(30);
+  const field::FieldData data = test::toy_field(cases, 0.3);
+
+  const double kernel = unseen_error(*make_kernel_method(), data);
+
+  for (const std::string& peer : peer_names())
+    EXPECT_LT(kernel, unseen_error(*make_peer(peer), data)) << peer;
+}
+
+TEST(KernelMethod, MirroredInputsGiveTheMirroredField) {
+  const field::CaseSet cases = test::toy_cases(20);
+  const auto model = make_kernel_method()->fit(test::toy_field(cases, 0.05), math::all_rows(20), {});
+  const std::vector<double> inputs{5, 6, 7, 8, 60, 2e-4, 1100, 0.55};
+  const field::Mirror& mirror = cases.mirrors[0];
+
+  const auto one = predict(*model, cases, inputs),
+             other = predict(*model, cases, mirror.apply_to_inputs(inputs));
+
+  for (std::size_t c = 0; c < one.size(); ++c) {
+    EXPECT_NEAR(other[c], one[static_cast<std::size_t>(mirror.cell_from[c])], 1e-4F * std::abs(one[c]));
+  }
+}
+
+TEST(KernelMethod, LearnsTheAsymmetryThatInputsExplain) {
+  const field::CaseSet cases = test::toy_cases(40);
+  const field::FieldData data = test::toy_field(cases, 0.02);
+
+  EXPECT_LT(unseen_error(*make_kernel_method(), data),
+            0.7 * unseen_error(*make_kernel_method({.antisymmetric = false}), data));
+}
+
+TEST(KernelMethod, WorksWithoutMirrors) {
+  const field::CaseSet cases = test::toy_cases(30, false);
+
+  EXPECT_LT(unseen_error(*make_kernel_method(), test::toy_field(cases)), 0.3);
+}
+
+TEST(KernelMethod, IsTheSameAfterSaveAndLoadAndForAnyThreads) {
+  const field::CaseSet cases = test::toy_cases(15);
+  const field::FieldData data = test::toy_field(cases, 0.1);
+  const std::vector<double> inputs{5, 6, 7, 8, 60, 2e-4, 1100, 0.55};
+  io::TensorFile file;
+
+  const auto one = make_kernel_method()->fit(data, math::all_rows(15), {.n_threads = 1});
+  const auto three = make_kernel_method()->fit(data, math::all_rows(15), {.n_threads = 3});
+  one->save(file, "m");
+
+  EXPECT_EQ(predict(*one, cases, inputs), predict(*three, cases, inputs));
+  EXPECT_EQ(predict(*one, cases, inputs), predict(*model::load_field_model(file, "m"), cases, inputs));
+}
+
+TEST(KernelMethod, HardCasesStayFinite) {
+  field::CaseSet cases = test::toy_cases(6);
+  field::FieldData data = test::toy_field(cases);
+  const std::vector<double> far{0, 1e9, -1, 0, 1e-12, 10, 5, 3};
+  const auto rows = math::all_rows(6);
+
+  data.values(2, 7) = 1e30F;
+  auto values = predict(*make_kernel_method()->fit(data, rows, {}), cases, far);
+  EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+      << "one wild cell";
+
+  data.values.setZero();
+  values = predict(*make_kernel_method()->fit(data, rows, {}), cases, far);
+  EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float v) { return v == 0; }))
+      << "a field of zeros";
+
+  cases.inputs.rowwise() = Eigen::RowVectorXd(cases.inputs.row(0));
+  values = predict(*make_kernel_method()->fit(test::toy_field(cases, 0.1), rows, {}), cases, far);
+  EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+      << "inputs that never vary";
+}
+
+}  // namespace
+}  // namespace elrom::methods

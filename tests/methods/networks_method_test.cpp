@@ -1,0 +1,94 @@
+#include "elrom/methods/networks_method.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "elrom/methods/cross_validation.hpp"
+#include "support/random_network.hpp"
+#include "support/toy_furnace.hpp"
+
+namespace elrom::methods {
+namespace {
+
+// Answers with a network of random weights: whatever order a prediction shows was brought in by the method.
+class RandomTrainer final : public networks::Trainer {
+ public:
+  [[nodiscard]] std::string name() const override { return "random"; }
+  [[nodiscard]] networks::TrainingResult train(const networks::TrainingProblem& problem,
+                                               const networks::Hyperparameters&,
+                                               const networks::TrainingBudget&, base::Seed seed,
+                                               networks::TrainingMonitor*, const std::stop_token&,
+                                               const std::filesystem::path&) const override {
+    n_train = problem.train_inputs.rows();
+    n_validation = problem.validation_inputs.rows();
+    const auto n_in = static_cast<std::size_t>(problem.train_inputs.cols()),
+               n_out = static_cast<std::size_t>(problem.train_targets.cols());
+    networks::TrainingResult result;
+    result.network = test::random_network({n_in, 7, n_out}, model::Activation::tanh, seed);
+    result.validation_mse = 0.5;
+    result.epochs = 1;
+    return result;
+  }
+  mutable std::atomic<Eigen::Index> n_train{0}, n_validation{0};
+};
+
+class Networks : public ::testing::Test {
+ protected:
+  std::unique_ptr<model::FieldModel> fit(const std::vector<std::string>& more) {
+    std::vector<std::string> wanted{"effort=quick", "screen.method=fast"};
+    wanted.insert(wanted.end(), more.begin(), more.end());
+    std::vector<std::size_t> rows(cases.n_cases());
+    std::iota(rows.begin(), rows.end(), 0);
+    return NetworksMethod(read_settings("no such file", wanted), trainer).fit(data, rows, {});
+  }
+  [[nodiscard]] std::vector<float> predict(const model::FieldModel& model,
+                                           std::span<const double> inputs) const {
+    std::vector<float> values(cases.mesh.n_cells());
+    model::Workspace workspace;
+    predict_case(model, inputs, cases.mesh.n_planes, values, workspace);
+    return values;
+  }
+  /// Largest difference between the mirror image of a prediction and the prediction for the mirror image.
+  [[nodiscard]] double asymmetry(const model::FieldModel& model) const {
+    const std::span<const double> inputs(cases.inputs.row(3).data(), cases.schema.size());
+    const auto plain = predict(model, inputs);
+    double most = 0;
+    for (const auto& mirror : cases.mirrors) {
+      const auto mirrored = predict(model, mirror.apply_to_inputs(inputs));
+      for (std::size_t c = 0; c < plain.size(); ++c)
+        most = std::max<double>(most,
+                                std::abs(mirrored[c] - plain[static_cast<std::size_t>(mirror.cell_from[c])]));
+    }
+    return most;
+  }
+
+  field::CaseSet cases = test::toy_cases(20);
+  field::FieldData data = test::toy_field(cases);
+  std::shared_ptr<RandomTrainer> trainer = std::make_shared<RandomTrainer>();
+};
+
+TEST_F(Networks, AveragedOverMirrorImagesTheyAreAsSymmetricAsTheFurnace) {
+  EXPECT_GT(asymmetry(*fit({"networks.average=false"})), 0.1) << "random weights know no symmetry";
+  EXPECT_LT(asymmetry(*fit({"networks.average=true"})), 1e-4);
+}
+
+TEST_F(Networks, MirrorImagesAreTrainedOnButDoNotStopTheTraining) {
+  (void)fit({"networks.mirrors=false"});
+  const auto n_train = trainer->n_train.load(), n_validation = trainer->n_validation.load();
+  (void)fit({"networks.mirrors=true"});
+  EXPECT_EQ(trainer->n_train, 4 * n_train);
+  EXPECT_EQ(trainer->n_validation, n_validation);
+}
+
+TEST_F(Networks, WithoutSymmetryThereAreNoImages) {
+  (void)fit({"networks.mirrors=false"});
+  const auto n_train = trainer->n_train.load();
+  const auto model = fit({"networks.mirrors=true", "networks.average=true", "symmetry.enabled=false"});
+  EXPECT_EQ(trainer->n_train, n_train);
+  EXPECT_EQ(model->kind(), "networks");
+}
+
+}  // namespace
+}  // namespace elrom::methods

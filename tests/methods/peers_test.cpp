@@ -1,0 +1,84 @@
+#include "elrom/methods/peers.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elrom/base/error.hpp"
+#include "elrom/math/statistics.hpp"
+#include "elrom/methods/cross_validation.hpp"
+#include "support/throws.hpp"
+#include "support/toy_furnace.hpp"
+
+namespace elrom::methods {
+namespace {
+
+MatrixF predict_all(const model::FieldModel& model, const field::CaseSet& cases) {
+  MatrixF values(cases.inputs.rows(), static_cast<Eigen::Index>(cases.mesh.n_cells()));
+  model::Workspace workspace;
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    predict_case(model, {cases.inputs.row(i).data(), 8}, cases.mesh.n_planes,
+                 {values.row(i).data(), static_cast<std::size_t>(values.cols())}, workspace);
+  }
+  return values;
+}
+
+/// Error of cases left out, relative to predicting the mean.
+double unseen_error(const Method& method, const field::FieldData& data) {
+  const auto rows = math::all_rows(data.cases->n_cases());
+  const MatrixF predicted = method.cross_predict(data, load_grouped_folds(data.cases->loads, rows, 6), {});
+  const Eigen::VectorXd deviation = math::column_moments(data.values, rows).deviation;
+  return std::sqrt((predicted - data.values).cast<double>().squaredNorm() /
+                   (deviation.squaredNorm() * rows.size()));
+}
+
+class EveryPeer : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Peers, EveryPeer, ::testing::ValuesIn(peer_names()));
+
+TEST_P(EveryPeer, PredictsUnseenCasesBetterThanTheMean) {
+  const field::CaseSet cases = test::toy_cases(30);
+
+  EXPECT_LT(unseen_error(*make_peer(GetParam()), test::toy_field(cases)),
+            GetParam() == "nearest" ? 0.8 : 0.4);
+}
+
+TEST_P(EveryPeer, AFieldThatNeverVariesStaysWhatItIs) {
+  const field::CaseSet cases = test::toy_cases(5);
+  field::FieldData data = test::toy_field(cases);
+  data.values.setConstant(0.1F);
+
+  const auto model = make_peer(GetParam())->fit(data, math::all_rows(5), {});
+
+  EXPECT_TRUE(predict_all(*model, cases) == data.values);
+}
+
+TEST_P(EveryPeer, TwoCasesConstantInputsAndOneWildCellStayFinite) {
+  field::CaseSet cases = test::toy_cases(2);
+  cases.inputs.col(3).setConstant(7);
+  field::FieldData data = test::toy_field(cases);
+  data.values(1, 5) = 1e30F;
+
+  const auto model = make_peer(GetParam())->fit(data, math::all_rows(2), {});
+
+  EXPECT_TRUE(predict_all(*model, cases).allFinite());
+}
+
+TEST_P(EveryPeer, DuplicateCasesStayFinite) {
+  field::CaseSet cases = test::toy_cases(6);
+  for (Eigen::Index i = 1; i < 3; ++i) cases.inputs.row(i) = cases.inputs.row(0);
+
+  const auto model = make_peer(GetParam())->fit(test::toy_field(cases), math::all_rows(6), {});
+
+  EXPECT_TRUE(predict_all(*model, cases).allFinite());
+}
+
+TEST_P(EveryPeer, KeepsItsNameInTheBundle) {
+  const field::CaseSet cases = test::toy_cases(6);
+
+  EXPECT_EQ(make_peer(GetParam())->fit(test::toy_field(cases), math::all_rows(6), {})->kind(), GetParam());
+}
+
+TEST(Peers, UnknownNameGetsTheNearest) {
+  EXPECT_ERROR(UsageError, "did you mean 'pod_rbf'", make_peer("pod_rfb"));
+}
+
+}  // namespace
+}  // namespace elrom::methods

@@ -1,0 +1,157 @@
+#include "elrom/networks/records.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "support/toy_furnace.hpp"
+
+namespace elrom::networks {
+namespace {
+
+constexpr std::size_t n_cases = 20, n_planes = 8;
+
+std::vector<std::size_t> all_cases() {
+  std::vector<std::size_t> rows(n_cases);
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
+
+/// The last cases stop or judge, the others train.
+std::vector<Part> whole_case_parts(std::size_t n_train) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < n_cases; ++i)
+    parts.insert(parts.end(), n_planes,
+                 i < n_train  ? Part::train
+                 : i % 2 == 0 ? Part::validation
+                              : Part::test);
+  return parts;
+}
+
+/// What a record's column of the toy stands for before it was scaled.
+float unscaled_target(const RecordSet& set, std::size_t record, Eigen::Index column) {
+  const auto r = static_cast<Eigen::Index>(record);
+  const auto row = set.outputs.row(static_cast<std::size_t>(set.records.plane[record]));
+  return set.records.targets(r, column) * set.outputs.deviation(row, column) + set.outputs.mean(row, column);
+}
+
+TEST(Records, TargetsOfTheTrainingRecordsAreStandardisedColumnByColumn) {
+  const auto cases = test::toy_cases(n_cases);
+  const auto set = make_records(test::toy_field(cases), all_cases(), whole_case_parts(14), {});
+
+  const auto train = set.records.rows(Part::train);
+  ASSERT_EQ(train.size(), 14 * n_planes);
+  for (Eigen::Index c = 0; c < set.records.targets.cols(); ++c) {
+    double sum = 0, squares = 0;
+    for (const auto r : train) {
+      sum += set.records.targets(r, c);
+      squares += std::pow(set.records.targets(r, c), 2);
+    }
+    EXPECT_NEAR(sum / static_cast<double>(train.size()), 0, 1e-5);
+    EXPECT_NEAR(squares / static_cast<double>(train.size()), 1, 1e-4);
+  }
+}
+
+TEST(Records, WhatDoesNotTrainDoesNotMoveTheScalers) {
+  auto cases = test::toy_cases(n_cases);
+  auto data = test::toy_field(cases);
+  const auto parts = whole_case_parts(14);
+  const auto before = make_records(data, all_cases(), parts, {.relevance = Relevance::gp});
+  data.values.bottomRows(6) *= 1000;
+  auto shifted = cases;
+  shifted.inputs.bottomRows(6) *= 7;
+  data.cases = &shifted;
+
+  const auto after = make_records(data, all_cases(), parts, {.relevance = Relevance::gp});
+
+  EXPECT_EQ(after.inputs.mean, before.inputs.mean);
+  EXPECT_EQ(after.inputs.factor, before.inputs.factor);
+  EXPECT_EQ(after.inputs.relevance, before.inputs.relevance);
+  EXPECT_EQ(after.outputs.mean, before.outputs.mean);
+  EXPECT_EQ(after.outputs.deviation, before.outputs.deviation);
+}
+
+// The toy's field is symmetric as the furnace is: what a mirrored
+// case shows is what the toy has for mirrored inputs.
+TEST(Records, MirrorImagesAreTheFieldsOfMirroredInputs) {
+  const auto cases = test::toy_cases(n_cases);
+  const auto data = test::toy_field(cases);
+  const auto set = make_records(data, all_cases(), whole_case_parts(14), {.mirrors = true});
+
+  const std::size_t plain = n_cases * n_planes;
+  ASSERT_EQ(set.records.plane.size(), plain + 3 * 14 * n_planes)
+      << "images train, they neither stop nor judge";
+  const auto group = field::symmetry_group(cases.mirrors, cases.schema.size(), cases.mesh.n_cells());
+  for (std::size_t r = plain; r < set.records.plane.size(); ++r) {
+    EXPECT_EQ(set.records.part[r], Part::train);
+    const auto image = 1 + (r - plain) / (14 * n_planes);
+    const auto inputs = cases.inputs.row(set.records.case_of[r]);
+    const auto mirrored =
+        group[image].apply_to_inputs({inputs.data(), static_cast<std::size_t>(inputs.size())});
+    const auto n_columns = static_cast<Eigen::Index>(cases.mesh.n_columns);
+    for (Eigen::Index c = 0; c < n_columns; c += 5) {
+      const auto p = cases.mesh.centre.row(set.records.plane[r] * n_columns + c);
+      const double expected = test::toy_velocity(mirrored, p(0), p(1), p(2));
+      EXPECT_NEAR(unscaled_target(set, r, c), expected, 1e-4 * (1 + std::abs(expected)));
+    }
+  }
+}
+
+TEST(Records, AProblemOfABandHasItsColumnsOnly) {
+  const auto cases = test::toy_cases(n_cases);
+  const auto set = make_records(test::toy_field(cases), all_cases(), whole_case_parts(14), {});
+  const Band band{.name = "some", .columns = {3, 11}, .mask = {}};
+
+  const auto problem = make_problem(set.records, band);
+
+  ASSERT_EQ(problem.train_targets.rows(), 14 * static_cast<Eigen::Index>(n_planes));
+  ASSERT_EQ(problem.train_targets.cols(), 2);
+  EXPECT_EQ(problem.train_weights.size(), 0);
+  EXPECT_EQ(problem.train_targets(5, 1), set.records.targets(5, 11));
+  EXPECT_EQ(problem.validation_inputs.rows(), 3 * static_cast<Eigen::Index>(n_planes));
+}
+
+TEST(Records, AMaskLeavesPlanesOutAndWeighsTheRest) {
+  const auto cases = test::toy_cases(n_cases);
+  const auto set = make_records(test::toy_field(cases), all_cases(), whole_case_parts(14), {});
+  Band band{.name = "some", .columns = {3, 11}, .mask = std::vector<std::uint8_t>(2 * n_planes, 0)};
+  band.mask[2 * 4] = 1;  // plane 4, first column
+
+  const auto problem = make_problem(set.records, band);
+
+  ASSERT_EQ(problem.train_targets.rows(), 14) << "one plane of each case";
+  EXPECT_EQ(problem.train_weights.col(0).minCoeff(), 1);
+  EXPECT_EQ(problem.train_weights.col(1).maxCoeff(), 0);
+}
+
+class RelevanceOf : public ::testing::TestWithParam<Relevance> {};
+
+TEST_P(RelevanceOf, TellsTheInputThatMovesTheFieldFromThoseThatDoNot) {
+  base::Random random(base::Seed(8));
+  MatrixD inputs(60, 4);
+  for (auto& value : inputs.reshaped()) value = random.normal();
+  MatrixF values(60, 30);
+  for (Eigen::Index i = 0; i < values.rows(); ++i)
+    for (Eigen::Index c = 0; c < values.cols(); ++c)
+      values(i, c) = static_cast<float>(inputs(i, 2) * (1 + 0.1 * static_cast<double>(c)) +
+                                        0.3 * inputs(i, 0) * std::sin(c));
+
+  const auto relevance = relevance_of(GetParam(), inputs, values);
+
+  ASSERT_EQ(relevance.size(), 4U);
+  EXPECT_EQ(relevance[2], 1);
+  EXPECT_GT(relevance[0], std::max(relevance[1], relevance[3]));
+  for (const double one : relevance) {
+    EXPECT_GE(one, 0.1);
+    EXPECT_LE(one, 1);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Kinds, RelevanceOf, ::testing::Values(Relevance::linear, Relevance::gp));
+
+TEST(Records, NoRelevanceIsNoList) {
+  EXPECT_TRUE(relevance_of(Relevance::none, MatrixD::Random(5, 2), MatrixF::Random(5, 3)).empty());
+}
+
+}  // namespace
+}  // namespace elrom::networks

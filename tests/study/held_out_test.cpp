@@ -1,0 +1,36 @@
+#include "elrom/study/held_out.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "elrom/base/error.hpp"
+
+namespace elrom::study {
+namespace {
+
+TEST(HeldOut, HeldOutCasesAreFoundByPattern) {
+  const auto split = hold_out({"train_000", "load_064", "rep1_064", "train_001"}, {"load_*", "rep*"});
+
+  EXPECT_THAT(split.building, ::testing::ElementsAre(0, 3));
+  EXPECT_THAT(split.held_out, ::testing::ElementsAre(1, 2));
+}
+
+TEST(HeldOut, HoldingOutAlmostEverythingIsRefused) {
+  EXPECT_THROW((void)hold_out({"a", "b"}, {"*"}), UsageError);
+}
+
+TEST(HeldOut, FileReadsBack) {
+  const auto path =
+      std::filesystem::temp_directory_path() / ("split_" + std::to_string(::getpid()) + ".json");
+  write_split(path, {"case", {"a"}, {"b"}, {"c", "d"}, {"e"}});
+
+  const auto split = read_split(path);
+
+  EXPECT_THAT(split.test, ::testing::ElementsAre("c", "d"));
+  EXPECT_THAT(split.held_out, ::testing::ElementsAre("e"));
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace elrom::study

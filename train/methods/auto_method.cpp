@@ -1,0 +1,280 @@
+#include "elrom/methods/auto_method.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/math/statistics.hpp"
+#include "elrom/methods/cross_validation.hpp"
+#include "elrom/model/composite_models.hpp"
+#include "elrom/networks/banding.hpp"
+
+namespace elrom::methods {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double sum_of_squares(const MatrixF& a) {
+  double sum = 0;
+  for (Index i = 0; i < a.rows(); ++i) sum += a.row(i).cast<double>().squaredNorm();
+  return sum;
+}
+
+/// Which fold each case is in, in the order of `cases`.
+std::vector<std::size_t> folds_of(std::span<const std::size_t> cases, const Folds& folds) {
+  std::vector<std::size_t> found(cases.size());
+  for (std::size_t k = 0; k < folds.size(); ++k) {
+    for (const std::size_t row : folds[k])
+      found[static_cast<std::size_t>(std::ranges::find(cases, row) - cases.begin())] = k;
+  }
+  return found;
+}
+
+/// Squared deviations from the rows' own mean, summed over rows and planes, (n_columns).
+VectorXd variation_of_columns(const field::FieldData& data, std::span<const std::size_t> cases) {
+  const auto moments = math::column_moments(data.values, cases);
+  const auto n_columns = static_cast<Index>(data.cases->mesh.n_columns);
+  VectorXd sums = VectorXd::Zero(n_columns);
+  for (Index first = 0; first < moments.deviation.size(); first += n_columns)
+    sums.array() += moments.deviation.segment(first, n_columns).array().square();
+  return sums * static_cast<double>(cases.size());
+}
+
+/// Weights that minimise w^T G w for sum w = 1 over the chosen members, without the sign condition.
+VectorXd unconstrained(const MatrixXd& gram, const std::vector<Index>& members) {
+  const auto n = static_cast<Index>(members.size());
+  MatrixXd part(n, n);
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j)
+      part(i, j) = gram(members[static_cast<std::size_t>(i)], members[static_cast<std::size_t>(j)]);
+  }
+  part.diagonal().array() += 1e-12 * part.trace() + 1e-300;  // equal candidates share their weight
+  const VectorXd solution = part.ldlt().solve(VectorXd::Ones(n));
+  return solution / solution.sum();
+}
+
+/// Cross-validated errors of every candidate that ends in finite numbers, and what follows from them.
+class Contest {
+ public:
+  Contest(const field::FieldData& data, std::span<const std::size_t> cases,
+          std::span<const Method* const> methods, const Folds& folds)
+      : data_(data),
+        cases_(cases),
+        methods_(methods),
+        folds_(folds),
+        variation_(variation_of_columns(data, cases)) {}
+
+  void run(const FitContext& context) {
+    std::exception_ptr first;
+    std::vector<MatrixF> all_errors;
+    for (const Method* method : methods_) {
+      CandidateScore score{.name = method->name(), .nrmse = std::numeric_limits<double>::quiet_NaN()};
+      try {
+        MatrixF errors = errors_of(method->cross_predict(data_, folds_, context));
+        if (!errors.allFinite()) throw NumericalError(score.name + ": predictions are not finite");
+        score.nrmse = relative(sum_of_squares(errors));
+        standing_.push_back(scores_.size());
+        all_errors.push_back(std::move(errors));
+      } catch (const NumericalError& error) {
+        if (!first) first = std::current_exception();
+        score.failure = error.what();
+        context.log->warning("auto: " + score.name + " is out for " + data_.info.name + ": " + error.what());
+      }
+      scores_.push_back(std::move(score));
+    }
+    if (all_errors.empty()) std::rethrow_exception(first);
+    sum_products(all_errors);
+  }
+
+  /// Weights of the final model, and its cross-validated error: the best candidate; a blend where it gains; a
+  /// blend for each band of columns where that gains still more.
+  [[nodiscard]] AutoFit decide(const AutoOptions& options) const {
+    MatrixD total = products_.front();
+    for (std::size_t k = 1; k < products_.size(); ++k) total += products_[k];
+    const MatrixXd gram = gram_of(total);
+    Index best = 0;
+    double squares = gram.diagonal().minCoeff(&best);
+    MatrixXd weights = VectorXd::Unit(gram.rows(), best);
+
+    // Weights fitted to the errors that they are judged by flatter a blend; those of the other folds do not.
+    double blended = 0, banded = 0;
+    for (std::size_t k = 0; k < products_.size(); ++k) {
+      const MatrixD others = total - products_[k];
+      blended += squares_of(products_[k], weights_of(gram_of(others)));
+      banded += squares_of(products_[k], band_weights(others, folds_[k].size(), options.band_edges));
+    }
+    const MatrixXd by_band = band_weights(total, 0, options.band_edges);
+    const double enough = 1 - options.least_gain;
+    if (relative(blended) < enough * relative(squares)) {
+      squares = blended;
+      weights = weights_of(gram);
+    }
+    if (by_band.cols() > 1 && relative(banded) < enough * relative(squares)) {
+      squares = banded;
+      weights = by_band;
+    }
+    AutoFit fit{.candidates = scores_,
+                .nrmse = relative(squares),
+                .nrmse_by_band = by_band.cols() > 1 ? relative(banded) : NAN};
+    for (Index i = 0; i < weights.rows(); ++i) {
+      CandidateScore& score = fit.candidates[standing_[static_cast<std::size_t>(i)]];
+      if (weights.row(i).maxCoeff() > 0) score.weights.assign(weights.row(i).begin(), weights.row(i).end());
+    }
+    return fit;
+  }
+
+ private:
+  [[nodiscard]] static VectorXd weights_of(const MatrixXd& gram) {
+    const std::vector<double> weights = blend_weights(gram);
+    return VectorXd::Map(weights.data(), gram.rows());
+  }
+
+  /// Products of the candidates' errors, summed over the planes and over the cases of each fold:
+  /// (n * n, n_columns), so that the Gram matrix of any set of columns is a sum.
+  void sum_products(const std::vector<MatrixF>& errors) {
+    const auto n = static_cast<Index>(errors.size()), n_columns = variation_.size();
+    const std::vector<std::size_t> fold_of = folds_of(cases_, folds_);
+    products_.assign(folds_.size(), MatrixD::Zero(n * n, n_columns));
+    for (std::size_t i_case = 0; i_case < cases_.size(); ++i_case) {
+      MatrixD& products = products_[fold_of[i_case]];
+      for (Index i = 0; i < n; ++i) {
+        for (Index j = 0; j <= i; ++j) {
+          const auto a = errors[static_cast<std::size_t>(i)].row(static_cast<Index>(i_case)).cast<double>();
+          const auto b = errors[static_cast<std::size_t>(j)].row(static_cast<Index>(i_case)).cast<double>();
+          for (Index first = 0; first < a.size(); first += n_columns)
+            products.row(i * n + j) += a.segment(first, n_columns).cwiseProduct(b.segment(first, n_columns));
+        }
+      }
+    }
+    for (MatrixD& products : products_) {
+      for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < i; ++j) products.row(j * n + i) = products.row(i * n + j);
+    }
+  }
+
+  [[nodiscard]] MatrixXd gram_of(const MatrixD& products) const {
+    return VectorXd(products.rowwise().sum()).reshaped(n_standing(), n_standing());
+  }
+
+  /// Squared error of the candidates weighed by the same weights everywhere, (n, 1), or by column.
+  [[nodiscard]] double squares_of(const MatrixD& products, const MatrixXd& weights) const {
+    if (weights.cols() == 1) return weights.col(0).dot(gram_of(products) * weights.col(0));
+    double sum = 0;
+    for (Index c = 0; c < products.cols(); ++c)
+      sum += weights.col(c).dot(gram_of(products.col(c)) * weights.col(c));
+    return sum;
+  }
+
+  /// Weights for each band of columns by the errors in `products`, which leave out so many cases: (n,
+  /// n_columns), or (n, 1) when all columns are in one band.
+  [[nodiscard]] MatrixXd band_weights(const MatrixD& products, std::size_t cases_left_out,
+                                      const std::vector<double>& edges) const {
+    const MatrixXd gram = gram_of(products);
+    const double share = 1 - static_cast<double>(cases_left_out) / static_cast<double>(cases_.size());
+    Index best = 0;
+    gram.diagonal().minCoeff(&best);
+    const VectorXd squares = products.row(best * (gram.rows() + 1));
+    std::vector<std::vector<Index>> bands(edges.size() + 1);
+    for (Index c = 0; c < products.cols(); ++c)
+      bands[networks::band_of(squares[c] / (share * variation_[c]), edges)].push_back(c);
+    std::erase_if(bands, [](const auto& columns) { return columns.empty(); });
+    const VectorXd everywhere = weights_of(gram);
+    if (bands.size() == 1) return everywhere;
+
+    MatrixXd weights(gram.rows(), products.cols());
+    for (const auto& columns : bands) {
+      const MatrixXd own = gram_of(products(Eigen::all, columns));
+      // Where all are exact, as in columns that never change, any weights do: no further members for them.
+      weights(Eigen::all, columns).colwise() = own.trace() > 0 ? weights_of(own) : everywhere;
+    }
+    return weights;
+  }
+
+  [[nodiscard]] MatrixF errors_of(const MatrixF& predictions) const {
+    MatrixF errors(static_cast<Index>(cases_.size()), data_.values.cols());
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      const auto row = static_cast<Index>(cases_[i]);
+      errors.row(static_cast<Index>(i)) = data_.values.row(row) - predictions.row(row);
+    }
+    return errors;
+  }
+  [[nodiscard]] double relative(double squares) const {
+    const double all = variation_.sum();
+    return all > 0 ? std::sqrt(std::max(0.0, squares) / all) : 0;
+  }
+  [[nodiscard]] Index n_standing() const { return static_cast<Index>(standing_.size()); }
+
+  const field::FieldData& data_;
+  std::span<const std::size_t> cases_;
+  std::span<const Method* const> methods_;
+  const Folds& folds_;
+  VectorXd variation_;  // of each column
+  std::vector<CandidateScore> scores_;
+  std::vector<std::size_t> standing_;  // places in scores_ of the n that ended in finite numbers
+  std::vector<MatrixD> products_;      // of each fold
+};
+
+}  // namespace
+
+double CandidateScore::mean_weight() const {
+  return weights.empty() ? 0 : VectorXd::Map(weights.data(), static_cast<Index>(weights.size())).mean();
+}
+
+std::vector<double> blend_weights(const MatrixXd& error_gram) {
+  std::vector<Index> members(static_cast<std::size_t>(error_gram.rows()));
+  for (std::size_t i = 0; i < members.size(); ++i) members[i] = static_cast<Index>(i);
+  // Drop the most negative weight until none is left: for a handful of candidates this is the optimum or next
+  // to it.
+  VectorXd weights = unconstrained(error_gram, members);
+  constexpr double negligible = 0.1;  // a member with less costs more to evaluate than it gives
+  for (Index least = 0; members.size() > 1 && weights.minCoeff(&least) < negligible;) {
+    members.erase(members.begin() + least);
+    weights = unconstrained(error_gram, members);
+  }
+  std::vector<double> all(static_cast<std::size_t>(error_gram.rows()), 0.0);
+  for (std::size_t i = 0; i < members.size(); ++i)
+    all[static_cast<std::size_t>(members[i])] = weights[static_cast<Index>(i)];
+  return all;
+}
+
+double cross_validated_nrmse(const field::FieldData& data, std::span<const std::size_t> cases,
+                             const MatrixF& residuals) {
+  const double total = variation_of_columns(data, cases).sum();
+  return total > 0 ? std::sqrt(sum_of_squares(residuals) / total) : 0;
+}
+
+AutoFit fit_auto(const field::FieldData& data, std::span<const std::size_t> cases,
+                 std::span<const Method* const> candidates, const AutoOptions& options,
+                 const FitContext& context) {
+  check(!candidates.empty(), "auto: at least one candidate");
+  const Folds folds = load_grouped_folds(data.cases->loads, cases, options.n_folds);
+  Contest contest(data, cases, candidates, folds);
+  contest.run(context);
+  AutoFit fit = contest.decide(options);
+
+  std::vector<model::BlendModel::Part> parts;
+  std::string told;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const CandidateScore& score = fit.candidates[i];
+    told += " " + score.name + " " + base::rounded(score.nrmse, 3) + (score.weights.empty() ? "" : "*");
+    if (!score.weights.empty()) parts.push_back({score.weights, candidates[i]->fit(data, cases, context)});
+  }
+  if (std::isfinite(fit.nrmse_by_band))
+    told += ", band by band " + base::rounded(fit.nrmse_by_band, 3) +
+            (parts.front().weights.size() > 1 ? "*" : "");
+  context.log->detail("auto: " + data.info.name + ":" + told);
+  if (parts.size() == 1)
+    fit.model = std::move(parts.front().model);
+  else
+    fit.model = std::make_unique<model::BlendModel>(std::move(parts));
+  return fit;
+}
+
+}  // namespace elrom::methods

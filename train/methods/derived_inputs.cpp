@@ -1,0 +1,180 @@
+#include "derived_inputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "elrom/math/statistics.hpp"
+
+namespace elrom::methods {
+
+namespace {
+
+using model::Feature;
+using model::FeatureTerm;
+using model::LinearForm;
+
+/// The smallest and the mean value of a form over the training cases.
+struct Range {
+  double least = std::numeric_limits<double>::infinity(), mean = 0;
+};
+
+/// The symmetric part of the inputs that mirrors exchange, as a sum over them.
+struct Quantity {
+  std::string name;
+  std::vector<std::size_t> inputs;
+  LinearForm sum;
+  Range range;
+  std::string unit;
+};
+
+class Builder {
+ public:
+  Builder(const field::CaseSet& cases, std::span<const std::size_t> rows,
+          const std::vector<SymmetryClass>& classes)
+      : cases_(cases), rows_(rows), classes_(classes) {
+    for (const auto& orbit : input_orbits(cases)) add_quantity(orbit);
+  }
+
+  DerivedInputs build() {
+    add_symmetric();
+    for (std::size_t c = 1; c < classes_.size(); ++c) add_imbalances(c);
+    return {model::FeatureMap(std::move(features_), static_cast<std::size_t>(cases_.inputs.cols())),
+            std::move(class_of_)};
+  }
+
+ private:
+  [[nodiscard]] std::span<const double> inputs_of(std::size_t row) const {
+    return {cases_.inputs.row(static_cast<Eigen::Index>(row)).data(),
+            static_cast<std::size_t>(cases_.inputs.cols())};
+  }
+
+  [[nodiscard]] Range range_of(const LinearForm& form) const {
+    Range range;
+    for (std::size_t row : rows_) {
+      const double value = form.value(inputs_of(row));
+      range.least = std::min(range.least, value);
+      range.mean += value / static_cast<double>(rows_.size());
+    }
+    return range;
+  }
+
+  void add_quantity(const std::vector<std::size_t>& orbit) {
+    Quantity q{cases_.schema[orbit.front()].name,
+               orbit,
+               project_input(cases_, orbit.front(), classes_.front()),
+               {},
+               {}};
+    if (q.sum.inputs.empty()) return;  // like a share q that mirrors take to 1 - q: no symmetric part
+    for (double& w : q.sum.weights) w *= static_cast<double>(orbit.size());
+    q.sum.offset *= static_cast<double>(orbit.size());
+    q.range = range_of(q.sum);
+    q.unit = cases_.schema[orbit.front()].unit;
+    quantities_.push_back(std::move(q));
+  }
+
+  /// Keeps a feature that varies.
+  void add(Feature feature, std::size_t class_index) {
+    math::RunningMoments moments;
+    for (std::size_t row : rows_) moments.add(feature.value(inputs_of(row)));
+    if (!(moments.deviation() > 1e-9 * std::max(1.0, std::abs(moments.mean())))) return;
+    features_.push_back(std::move(feature));
+    class_of_.push_back(class_index);
+  }
+
+  /// log of a form that is positive in all training cases;
+  /// held above a thousandth of its mean outside of them.
+  [[nodiscard]] static FeatureTerm log_of(const LinearForm& form, const Range& range, double coefficient) {
+    return {FeatureTerm::Kind::logarithm, coefficient, form, {}, 1e-3 * range.mean};
+  }
+
+  [[nodiscard]] const Quantity* only(const std::string& unit) const {
+    const Quantity* found = nullptr;
+    for (const Quantity& q : quantities_) {
+      if (q.unit != unit || !(q.range.least > 0)) continue;
+      if (found != nullptr) return nullptr;
+      found = &q;
+    }
+    return found;
+  }
+
+  [[nodiscard]] const Quantity* spread() const {
+    for (const Quantity& q : quantities_) {
+      if (q.unit == "1" && q.name.find("spread") != std::string::npos) return &q;
+    }
+    return nullptr;
+  }
+
+  /// log(flow * T / Sauter diameter): of a log-normal distribution by mass, d32 = d50 exp(-spread^2 / 2).
+  [[nodiscard]] Feature velocity(const std::string& name, const LinearForm& flow, const Range& range) const {
+    Feature feature{name, {log_of(flow, range, 1)}};
+    if (const Quantity* t = only("K")) feature.terms.push_back(log_of(t->sum, t->range, 1));
+    if (const Quantity* d = only("m")) {
+      feature.terms.push_back(log_of(d->sum, d->range, -1));
+      if (const Quantity* s = spread())
+        feature.terms.push_back({FeatureTerm::Kind::square, 0.5, s->sum, {}, 0});
+    }
+    return feature;
+  }
+
+  void add_symmetric() {
+    std::vector<const Quantity*> inlets;
+    LinearForm gas;
+    for (const Quantity& q : quantities_) {
+      if (q.unit != "kg/s" || !(q.range.least > 0)) continue;
+      inlets.push_back(&q);
+      gas.inputs.insert(gas.inputs.end(), q.sum.inputs.begin(), q.sum.inputs.end());
+      gas.weights.insert(gas.weights.end(), q.sum.weights.begin(), q.sum.weights.end());
+    }
+    if (inlets.size() > 1) {
+      const Range range = range_of(gas);
+      const Quantity* largest =
+          *std::max_element(inlets.begin(), inlets.end(),
+                            [](const auto* a, const auto* b) { return a->range.mean < b->range.mean; });
+      add(velocity("velocity of all gas over diameter", gas, range), 0);
+      add(velocity("velocity of " + largest->name + " over diameter", largest->sum, largest->range), 0);
+      for (const Quantity* q : inlets) {
+        if (q != largest)
+          add({"share of " + q->name, {log_of(q->sum, q->range, 1), log_of(gas, range, -1)}}, 0);
+      }
+    }
+    for (const Quantity& q : quantities_) {
+      if (inlets.size() > 1 && std::find(inlets.begin(), inlets.end(), &q) != inlets.end()) continue;
+      const bool logarithmic = q.range.least > 0 && q.unit != "1";
+      add({q.name,
+           {logarithmic ? log_of(q.sum, q.range, 1)
+                        : FeatureTerm{FeatureTerm::Kind::value, 1, q.sum, {}, 0}}},
+          0);
+    }
+  }
+
+  void add_imbalances(std::size_t class_index) {
+    for (const auto& orbit : input_orbits(cases_)) {
+      const LinearForm odd = project_input(cases_, orbit.front(), classes_[class_index]);
+      if (odd.inputs.empty()) continue;
+      const LinearForm even = project_input(cases_, orbit.front(), classes_.front());
+      const Range range = range_of(even);
+      FeatureTerm term{FeatureTerm::Kind::value, 1, odd, {}, 0};
+      if (orbit.size() > 1 && range.least > 0)
+        term = {FeatureTerm::Kind::quotient, 1, odd, even, 1e-3 * range.mean};
+      add({"imbalance of " + cases_.schema[orbit.front()].name, {std::move(term)}}, class_index);
+    }
+  }
+
+  const field::CaseSet& cases_;
+  std::span<const std::size_t> rows_;
+  const std::vector<SymmetryClass>& classes_;
+  std::vector<Quantity> quantities_;
+  std::vector<Feature> features_;
+  std::vector<std::size_t> class_of_;
+};
+
+}  // namespace
+
+DerivedInputs derive_inputs(const field::CaseSet& cases, std::span<const std::size_t> rows,
+                            const std::vector<SymmetryClass>& classes) {
+  return Builder(cases, rows, classes).build();
+}
+
+}  // namespace elrom::methods

@@ -1,0 +1,27 @@
+#pragma once
+// The derived inputs of the kernel method, from the schema's units and names and the declared mirrors;
+// internal to study.
+
+#include <span>
+#include <vector>
+
+#include "elrom/methods/method.hpp"
+#include "elrom/model/feature_map.hpp"
+#include "symmetry_classes.hpp"
+
+namespace elrom::methods {
+
+struct DerivedInputs {
+  model::FeatureMap map;
+  std::vector<std::size_t> class_of;  ///< index of the symmetry class of each feature
+};
+
+/// Symmetric features: where the schema has gas flows [kg/s], a temperature [K] and a diameter [m], the gas
+/// velocity over the solids' Sauter diameter (all gas, and the largest inlet alone), the other inlets' shares
+/// of the gas, and logarithms of what is positive; otherwise the inputs themselves. Inputs that mirrors
+/// exchange enter by their sum. Antisymmetric features: the imbalance of exchanged inputs relative to their
+/// mean. Features that do not vary over the given cases are left out.
+[[nodiscard]] DerivedInputs derive_inputs(const field::CaseSet& cases, std::span<const std::size_t> rows,
+                                          const std::vector<SymmetryClass>& classes);
+
+}  // namespace elrom::methods

@@ -1,0 +1,167 @@
+#include "leave_one_out.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "elrom/math/kernel.hpp"
+#include "elrom/math/optimise.hpp"
+
+namespace elrom::methods {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Prior variance of the field's mean, in units of the signal: large, so that the data fix the mean.
+constexpr double mean_variance = 100;
+
+struct Matern {
+  MatrixXd squares, k, slope;  // r^2, m(r), (dm/dr) / r
+};
+
+Matern matern_of(const MatrixD& scaled) {
+  Matern m{math::squared_distances(scaled, scaled), {}, {}};
+  m.squares.diagonal().setZero();
+  m.k = m.squares.unaryExpr(
+      [](double s) { return math::covariance(math::Covariance::matern52, std::sqrt(s)); });
+  m.slope = m.squares.unaryExpr(
+      [](double s) { return math::covariance_slope(math::Covariance::matern52, std::sqrt(s)); });
+  return m;
+}
+
+MatrixD columns(const MatrixD& z, const std::vector<Index>& used) {
+  MatrixD taken(z.rows(), static_cast<Index>(used.size()));
+  for (std::size_t j = 0; j < used.size(); ++j) taken.col(static_cast<Index>(j)) = z.col(used[j]);
+  return taken;
+}
+
+/// theta = (log lengths, log linear, log noise)
+double symmetric_objective(const MatrixD& x, const MatrixXd& gram, const VectorXd& theta,
+                           VectorXd& gradient) {
+  const Index p = x.cols();
+  const VectorXd inverse = (-theta.head(p)).array().exp();
+  const double linear = std::exp(theta[p]), noise = std::exp(theta[p + 1]);
+  const MatrixD a = x * inverse.asDiagonal();
+  const Matern m = matern_of(a);
+  const MatrixXd dots = a * a.transpose();
+  MatrixXd slope;
+  const MatrixXd k = (m.k + linear * dots).array() + mean_variance;
+  const double value = leave_one_out_error(k, noise, gram, &slope);
+
+  gradient.setZero(theta.size());
+  if (!std::isfinite(value)) return value;
+  const MatrixXd q = slope.cwiseProduct(m.slope);
+  const VectorXd row_sums = q.rowwise().sum();
+  const MatrixD qa = q * a, sa = slope * a;
+  for (Index j = 0; j < p; ++j) {
+    gradient[j] = -2 * (row_sums.dot(a.col(j).cwiseAbs2()) - a.col(j).dot(qa.col(j))) -
+                  2 * linear * sa.col(j).dot(a.col(j));
+  }
+  gradient[p] = linear * slope.cwiseProduct(dots).sum();
+  gradient[p + 1] = noise * slope.trace();
+  return value;
+}
+
+/// theta = (log weights of the imbalances, log linear, log common length factor, log noise)
+double antisymmetric_objective(const MatrixD& a, const MatrixD& o, const MatrixXd& gram,
+                               const VectorXd& theta, VectorXd& gradient) {
+  const Index p = o.cols();
+  const VectorXd weights = theta.head(p).array().exp();
+  const double linear = std::exp(theta[p]), noise = std::exp(theta[p + 2]);
+  const Matern m = matern_of(a * std::exp(-theta[p + 1]));
+  const MatrixXd products = o * weights.asDiagonal() * o.transpose();
+  const MatrixXd near = m.k.array() + linear;
+  MatrixXd slope;
+  const double value = leave_one_out_error(products.cwiseProduct(near), noise, gram, &slope);
+
+  gradient.setZero(theta.size());
+  if (!std::isfinite(value)) return value;
+  const MatrixXd q = slope.cwiseProduct(near);
+  gradient.head(p) = (q * o).cwiseProduct(o).colwise().sum().transpose().cwiseProduct(weights);
+  const MatrixXd sp = slope.cwiseProduct(products);
+  gradient[p] = linear * sp.sum();
+  gradient[p + 1] = -sp.cwiseProduct(m.slope).cwiseProduct(m.squares).sum();
+  gradient[p + 2] = noise * slope.trace();
+  return value;
+}
+
+/// The objective per unit of the targets' size, so that tolerances mean the same for every field.
+template <class F>
+math::Objective normalised(const F& objective, double size) {
+  return [&objective, size](const VectorXd& theta, VectorXd& gradient) {
+    const double value = objective(theta, gradient) / size;
+    gradient /= size;
+    return value;
+  };
+}
+
+VectorXd logs(Index n, double repeated, std::initializer_list<double> rest) {
+  VectorXd values(n + static_cast<Index>(rest.size()));
+  values.head(n).setConstant(std::log(repeated));
+  for (Index i = 0; double v : rest) values[n + i++] = std::log(v);
+  return values;
+}
+
+constexpr math::MinimiseOptions search{
+    .max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6, .value_tolerance = 1e-8};
+
+}  // namespace
+
+double leave_one_out_error(const MatrixXd& covariance, double noise, const MatrixXd& gram, MatrixXd* slope) {
+  const Index n = covariance.rows();
+  MatrixXd k = covariance;
+  k.diagonal().array() += noise;
+  const Eigen::LLT<MatrixXd> factor(k);
+  if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+  const MatrixXd p = factor.solve(MatrixXd::Identity(n, n));
+  const MatrixXd q = p * gram * p;
+  const VectorXd weight = p.diagonal().array().square().inverse();
+  if (slope != nullptr) {
+    // From dP = -P dK P: dJ/dK = -(Q W P + (Q W P)^T) + 2 P diag(Q_ii / P_ii^3) P.
+    const MatrixXd qwp = q * weight.asDiagonal() * p;
+    const VectorXd cubic = q.diagonal().array() * weight.array() / p.diagonal().array();
+    *slope = -(qwp + qwp.transpose()) + 2 * p * cubic.asDiagonal() * p;
+  }
+  return q.diagonal().dot(weight);
+}
+
+model::SmootherKernel fit_symmetric_kernel(const MatrixD& z, const std::vector<Index>& used,
+                                           const MatrixXd& gram) {
+  const MatrixD x = columns(z, used);
+  const auto p = x.cols();
+  const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
+    return symmetric_objective(x, gram, theta, gradient);
+  };
+  const math::Minimum best = math::minimise(normalised(objective, gram.trace()), logs(p, 4, {0.3, 0.3}),
+                                            logs(p, 0.5, {1e-3, 1e-4}), logs(p, 200, {30, 100}), search);
+  model::SmootherKernel kernel{
+      .linear = std::exp(best.x[p]), .constant = mean_variance, .noise = std::exp(best.x[p + 1])};
+  kernel.inverse_lengths = kernel.imbalance = VectorXd::Zero(z.cols());
+  for (Index j = 0; j < p; ++j)
+    kernel.inverse_lengths[used[static_cast<std::size_t>(j)]] = std::exp(-best.x[j]);
+  return kernel;
+}
+
+model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z, const model::SmootherKernel& symmetric,
+                                               const std::vector<Index>& imbalances, const MatrixXd& gram) {
+  const MatrixD a = z * symmetric.inverse_lengths.asDiagonal(), o = columns(z, imbalances);
+  const auto p = o.cols();
+  const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
+    return antisymmetric_objective(a, o, gram, theta, gradient);
+  };
+  const math::Minimum best =
+      math::minimise(normalised(objective, gram.trace()), logs(p, 0.1, {1, 1, 1}),
+                     logs(p, 1e-5, {1e-3, 0.2, 0.1}), logs(p, 10, {10, 30, 1e4}), search);
+  model::SmootherKernel kernel{
+      .antisymmetric = true, .linear = std::exp(best.x[p]), .noise = std::exp(best.x[p + 2])};
+  kernel.inverse_lengths = symmetric.inverse_lengths * std::exp(-best.x[p + 1]);
+  kernel.imbalance = VectorXd::Zero(z.cols());
+  for (Index j = 0; j < p; ++j)
+    kernel.imbalance[imbalances[static_cast<std::size_t>(j)]] = std::exp(0.5 * best.x[j]);
+  return kernel;
+}
+
+}  // namespace elrom::methods

@@ -1,0 +1,31 @@
+#pragma once
+// Hyperparameters of a smoother by the leave-one-case-out error
+// of whole fields, in closed form; internal to study.
+
+#include <Eigen/Core>
+
+#include "elrom/math/matrix.hpp"
+#include "elrom/model/smoother_coefficients.hpp"
+
+namespace elrom::methods {
+
+/// Sum over cases and cells of squared leave-one-out residuals of the smoother H = K (K + noise I)^-1, which
+/// are (P y)_i / P_ii with P = (K + noise I)^-1; only the cases' Gram matrix G = Y Y^T is needed: J = sum_i
+/// (P G P)_ii / P_ii^2.
+/// @param slope if given, dJ / dK, symmetric, (n_cases, n_cases)
+[[nodiscard]] double leave_one_out_error(const Eigen::MatrixXd& covariance, double noise,
+                                         const Eigen::MatrixXd& gram, Eigen::MatrixXd* slope = nullptr);
+
+/// @param z standardised features, (n_cases, n_features) @param used features of the symmetric part
+[[nodiscard]] model::SmootherKernel fit_symmetric_kernel(const MatrixD& z,
+                                                         const std::vector<Eigen::Index>& used,
+                                                         const Eigen::MatrixXd& gram);
+
+/// @param symmetric the field's symmetric kernel: its lengths are kept, up to one common factor
+/// @param imbalances features of the antisymmetric part
+[[nodiscard]] model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z,
+                                                             const model::SmootherKernel& symmetric,
+                                                             const std::vector<Eigen::Index>& imbalances,
+                                                             const Eigen::MatrixXd& gram);
+
+}  // namespace elrom::methods

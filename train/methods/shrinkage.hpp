@@ -1,0 +1,51 @@
+#pragma once
+// How far predicted deviations from the mean are trusted, wavelength by wavelength and cell by cell: the
+// factors that make leave-one-out predictions fit best (an empirical Wiener filter). Internal to study.
+
+#include <array>
+#include <optional>
+
+#include "elrom/field/mesh.hpp"
+#include "elrom/math/cosine_transform.hpp"
+#include "elrom/math/matrix.hpp"
+
+namespace elrom::methods {
+
+/// Cells of the mesh as a box (planes, rows, cells of a row),
+/// when its columns lie in rows of equal y; else nothing.
+[[nodiscard]] std::optional<std::array<std::size_t, 3>> box_of(const field::Mesh& mesh);
+
+class Shrinkage {
+ public:
+  /// Without a box every factor is 1.
+  explicit Shrinkage(std::optional<std::array<std::size_t, 3>> box);
+
+  struct Options {
+    bool spectral = true;  ///< factors by wavelength band before those by cell
+    double prior = 1e-3;   ///< weight of "trust it", relative to the mean energy of a band or a cell
+  };
+  /// @param deviations predicted for cases that were left out, (n_cases, n_cells); shrunk on return
+  /// @param truth of the same cases
+  void learn(MatrixF& deviations, const MatrixF& truth, const Options& options, int n_threads);
+  /// Multiplies by what was learned.
+  void apply(MatrixF& deviations, int n_threads) const;
+
+ private:
+  void learn_bands(const MatrixF& deviations, const MatrixF& truth, double prior, int n_threads);
+  void learn_cells(const MatrixF& deviations, const MatrixF& truth, double prior);
+  void apply_bands(MatrixF& deviations, int n_threads) const;
+
+  std::optional<math::CosineTransform> transform_;
+  std::vector<std::size_t> band_;  //!< of each coefficient, (n_cells)
+  std::size_t n_bands_ = 0;
+  Eigen::VectorXf spectral_;  //!< factor of each coefficient, (n_cells); empty: all 1
+  Eigen::VectorXf cellwise_;  //!< factor of each cell, (n_cells); empty: all 1
+};
+
+/// Sums over a window of cells around each cell, at the border with the border's value repeated. (n_cells) in
+/// and out.
+[[nodiscard]] Eigen::VectorXd window_sums(const Eigen::VectorXd& values,
+                                          const std::array<std::size_t, 3>& box,
+                                          const std::array<std::size_t, 3>& half_widths);
+
+}  // namespace elrom::methods

@@ -1,0 +1,35 @@
+#pragma once
+// Parts of a field that a mirror either keeps or turns into their negative; internal to study.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "elrom/methods/method.hpp"
+#include "elrom/model/feature_map.hpp"
+
+namespace elrom::methods {
+
+/// One sign a mirror: +1 keeps, -1 negates. Without mirrors there is one class, the whole field.
+struct SymmetryClass {
+  std::vector<int> signs;
+  [[nodiscard]] bool symmetric() const;
+};
+
+/// All combinations of signs, the symmetric one first.
+[[nodiscard]] std::vector<SymmetryClass> symmetry_classes(std::size_t n_mirrors);
+
+/// Projections of the given rows on a class, product over mirrors of (1 + sign * M) / 2; (rows.size(),
+/// n_cells). The classes' projections add up to the rows, and are orthogonal to each other.
+[[nodiscard]] MatrixF project(const field::FieldData& data, std::span<const std::size_t> rows,
+                              const SymmetryClass& symmetry, int n_threads);
+
+/// The same projection of one input, as a linear form; all weights are zero when the class has no part in
+/// that input.
+[[nodiscard]] model::LinearForm project_input(const field::CaseSet& cases, std::size_t input,
+                                              const SymmetryClass& symmetry);
+
+/// Inputs that mirrors exchange, each list ascending; inputs on their own make lists of one.
+[[nodiscard]] std::vector<std::vector<std::size_t>> input_orbits(const field::CaseSet& cases);
+
+}  // namespace elrom::methods

@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/model/bundle.hpp"
+#include "elrom/study/held_out.hpp"
+
+namespace elrom::programs {
+namespace {
+
+using std::filesystem::path;
+
+void print_split(const path& folder) {
+  if (!std::filesystem::exists(folder / "split.json")) return;
+  const auto split = study::read_split(folder / "split.json");
+  fmt::print("cases      {} train, {} validation, {} test, {} held out (by {})\n", split.train.size(),
+             split.validation.size(), split.test.size(), split.held_out.size(), split.by);
+}
+
+void print_stages(const path& folder) {
+  std::map<std::string, int> count;
+  if (std::filesystem::is_directory(folder / "stages")) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "stages")) {
+      const auto name = entry.path().filename().string();
+      if (entry.path().extension() == ".elrom") ++count[name.substr(0, name.find('-'))];
+    }
+  }
+  for (const auto& [stage, n] : count) fmt::print("kept       {} results of stage {}\n", n, stage);
+}
+
+void print_trials(const path& folder) {
+  if (!std::filesystem::exists(folder / "search.sqlite")) return;
+  for (const auto& search : networks::TrialStore(folder / "search.sqlite").searches()) {
+    double best = HUGE_VAL;
+    int pruned = 0;
+    for (const auto& trial : search.trials) {
+      if (!trial.pruned && trial.i_seed == 0) best = std::min(best, trial.value);
+      pruned += trial.pruned;
+    }
+    fmt::print("search     {}: {} trials, {} pruned, best {}\n", search.name, search.trials.size(), pruned,
+               base::rounded(best));
+  }
+}
+
+void print_bundle(const path& file) {
+  const model::BundleReader bundle(file);
+  fmt::print("bundle     {}: {}, {} fields, {} cases\n", file.string(), bundle.info().method,
+             bundle.info().fields.size(), bundle.info().cases.size());
+}
+
+void print_bundles(const path& folder) {
+  if (std::filesystem::exists(folder / "model.elrom")) print_bundle(folder / "model.elrom");
+  if (!std::filesystem::is_directory(folder / "peers")) return;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "peers")) {
+    if (entry.path().extension() == ".elrom") print_bundle(entry.path());
+  }
+}
+
+void print_timing(const path& folder) {
+  if (!std::filesystem::exists(folder / "timing.json")) return;
+  const auto json = nlohmann::json::parse(base::read_text(folder / "timing.json"), nullptr, false);
+  if (!json.is_object())
+    throw InputError({.what = "no valid timing file", .where = (folder / "timing.json").string()});
+  fmt::print("last run   {}, {} GiB resident at most\n", base::duration(json.value("total_seconds", 0.0)),
+             base::rounded(json.value("peak_rss_gib", 0.0), 3));
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, Run& run) {
+  auto* command =
+      app.add_subcommand("status", "what a study holds: cases, kept stages, trials, bundles, time");
+  auto folder = std::make_shared<path>();
+  command->add_option("STUDY", *folder, "folder of the study")->required();
+  command->callback([&run, folder] {
+    run = [folder] {
+      if (!std::filesystem::is_directory(*folder))
+        throw InputError({.what = "no such folder", .where = folder->string()});
+      print_split(*folder);
+      print_stages(*folder);
+      print_trials(*folder);
+      print_bundles(*folder);
+      print_timing(*folder);
+      return 0;
+    };
+  });
+}
+
+}  // namespace elrom::programs

@@ -1,0 +1,45 @@
+#pragma once
+// The subcommands of elrom-train, one file each (command_<name>.cpp).
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "elrom/base/log.hpp"
+#include "elrom/study/study.hpp"
+
+namespace elrom::programs {
+
+/// What every subcommand that works in a study takes.
+struct StudyArguments {
+  std::filesystem::path folder, store;
+  std::string effort, device;
+  int threads = -1;
+  std::vector<std::string> settings;  ///< "key=value"
+  bool quiet = false;
+
+  void add_to(CLI::App& command);
+  /// study.toml with the command line on top.
+  [[nodiscard]] study::Settings resolve() const;
+  [[nodiscard]] std::unique_ptr<Log> log() const;
+};
+
+/// What a subcommand does with the study that its arguments name; its value is the exit status.
+using StudyWork = std::function<int(const study::Settings& settings, const study::Toolbox& tools, Log& log)>;
+/// Does it with what this build can train with (study_tools.cpp). Among several processes (mpirun) one does;
+/// the others train for it. @throws NotBuiltError for several processes without MPI
+[[nodiscard]] int in_study(const StudyArguments& arguments, const StudyWork& work);
+
+/// A subcommand sets `run` when it is chosen; its value is the exit status.
+using Run = std::function<int()>;
+void add_run(CLI::App& app, Run& run);
+void add_screen(CLI::App& app, Run& run);
+void add_search(CLI::App& app, Run& run);
+void add_fit(CLI::App& app, Run& run);
+void add_retrain(CLI::App& app, Run& run);
+void add_status(CLI::App& app, Run& run);
+
+}  // namespace elrom::programs

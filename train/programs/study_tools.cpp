@@ -1,0 +1,73 @@
+// The one place that knows which of LibTorch and MPI are part of this build.
+#include <cstdlib>
+
+#include "commands.hpp"
+#include "elrom/base/app.hpp"
+#include "elrom/base/error.hpp"
+#if ELROM_HAS_TORCH
+#include "elrom/torch/trainer.hpp"
+#endif
+#if ELROM_HAS_MPI
+#include "elrom/mpi/world.hpp"
+#endif
+
+namespace elrom::programs {
+namespace {
+
+std::shared_ptr<const networks::Trainer> make_trainer(const study::Settings& settings) {
+#if ELROM_HAS_TORCH
+  return elrom::torch::make_torch_trainer(settings.device);
+#else
+  if (settings.device != "cpu") {
+    throw NotBuiltError({.what = "device " + settings.device + " needs LibTorch, which this build left out",
+                         .advice = "build with -DELROM_TORCH=ON"});
+  }
+  return nullptr;
+#endif
+}
+
+/// Whether a launcher (mpirun, mpiexec, srun) started this process beside others.
+bool is_one_of_several() {
+  for (const char* size : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
+    if (const char* text = std::getenv(size)) return std::atoi(text) > 1;
+  }
+  return false;
+}
+
+int work_alone(const StudyArguments& arguments, const StudyWork& work) {
+  const auto settings = arguments.resolve();
+  const auto log = arguments.log();
+  return work(settings, {.trainer = make_trainer(settings)}, *log);
+}
+
+#if ELROM_HAS_MPI
+int work_together(const StudyArguments& arguments, const StudyWork& work) {
+  const auto stop =
+      base::interrupt_token();  // before the ranks meet: one that failed alone would keep the others waiting
+  const mpi::World world;
+  if (world.rank() > 0) {
+    // Settings are read with the first unit: when they are wrong, rank 0 says so once and there is none.
+    world.serve([&] { return make_trainer(arguments.resolve()); }, stop);
+    return 0;
+  }
+  const auto settings = arguments.resolve();
+  const auto log = arguments.log();
+  const auto workers = world.workers();
+  auto trainer = make_trainer(settings);
+  if (trainer != nullptr) trainer = workers->trainer(std::move(trainer));
+  return work(settings, {.trainer = std::move(trainer), .workers = workers.get()}, *log);
+}
+#else
+int work_together(const StudyArguments&, const StudyWork&) {
+  throw NotBuiltError({.what = "several processes need MPI, which this build left out",
+                       .advice = "build with -DELROM_MPI=ON, or start one process"});
+}
+#endif
+
+}  // namespace
+
+int in_study(const StudyArguments& arguments, const StudyWork& work) {
+  return is_one_of_several() ? work_together(arguments, work) : work_alone(arguments, work);
+}
+
+}  // namespace elrom::programs

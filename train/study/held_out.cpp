@@ -1,0 +1,50 @@
+#include "elrom/study/held_out.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/base/version.hpp"
+
+namespace elrom::study {
+
+HeldOut hold_out(const std::vector<std::string>& names, const std::vector<std::string>& patterns) {
+  HeldOut result;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool out = std::ranges::any_of(patterns, [&](const auto& p) { return base::matches(names[i], p); });
+    (out ? result.held_out : result.building).push_back(i);
+  }
+  if (result.building.size() < 2) {
+    throw UsageError(
+        {.what = "too few cases to build with",
+         .where = "split.held_out",
+         .found = std::to_string(result.building.size()) + " of " + std::to_string(names.size()) + " cases",
+         .expected = "at least 2 that are not held out"});
+  }
+  return result;
+}
+
+void write_split(const std::filesystem::path& path, const SplitNames& split) {
+  const nlohmann::ordered_json json{{"kind", "elrom-split"},        {"format", {1, 0}},
+                                    {"program", program_version()}, {"by", split.by},
+                                    {"train", split.train},         {"validation", split.validation},
+                                    {"test", split.test},           {"held_out", split.held_out}};
+  base::write_text(path, json.dump(1) + "\n");
+}
+
+SplitNames read_split(const std::filesystem::path& path) {
+  try {
+    const auto json = nlohmann::json::parse(base::read_text(path));
+    if (json.at("kind") != "elrom-split" || json.at("format").at(0) != 1) {
+      throw InputError(
+          {.what = "another kind or version of file", .where = path.string(), .expected = "elrom-split 1"});
+    }
+    return {json.at("by"), json.at("train"), json.at("validation"), json.at("test"), json.at("held_out")};
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError({.what = "no valid split file", .where = path.string(), .found = error.what()});
+  }
+}
+
+}  // namespace elrom::study
