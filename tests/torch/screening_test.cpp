@@ -8,7 +8,7 @@
 #include "sequential_screening.hpp"
 #include "support/random_network.hpp"
 
-namespace elrom::study {
+namespace elrom::networks {
 namespace {
 
 using ::torch::Tensor;
@@ -53,8 +53,8 @@ TEST(BatchedScreening, GradientEqualsAutograd) {
   }
 }
 
-networks::ScreeningData noisy_columns() {
-  networks::ScreeningData data;
+ScreeningData noisy_columns() {
+  ScreeningData data;
   const Eigen::Index n_cases = 40, n_planes = 4, n_columns = 12;
   data.n_planes = n_planes;
   data.inputs.resize(n_cases * n_planes, 4);
@@ -71,16 +71,16 @@ networks::ScreeningData noisy_columns() {
     }
     data.plane.push_back(static_cast<std::int32_t>(r % n_planes));
     data.case_of.push_back(static_cast<std::int32_t>(i));
-    data.part.push_back(i % 10 < 7   ? networks::Part::train
-                        : i % 10 < 9 ? networks::Part::validation
-                                     : networks::Part::test);
+    data.part.push_back(i % 10 < 7   ? Part::train
+                        : i % 10 < 9 ? Part::validation
+                                     : Part::test);
   }
   return data;
 }
 
 TEST(BatchedScreening, EndsWithTheErrorsOfTheLoopOfSingleNetworks) {
   const auto data = noisy_columns();
-  networks::ScreenSettings settings;
+  ScreenSettings settings;
   settings.builds = 2;
   settings.max_epochs = 25;
   settings.n_units = 6;
@@ -101,4 +101,4 @@ TEST(BatchedScreening, EndsWithTheErrorsOfTheLoopOfSingleNetworks) {
 }
 
 }  // namespace
-}  // namespace elrom::study
+}  // namespace elrom::networks
