@@ -164,6 +164,10 @@ void Checker::add_unreadable(const std::string& name, const std::string& reason)
   unreadable_.push_back({"unreadable", Severity::wrong, name, "", -1, reason});
 }
 
+void Checker::forget(const std::set<std::string>& names) {
+  std::erase_if(cases_, [&](const CaseSummary& one) { return names.contains(one.name); });
+}
+
 void Checker::add_dead_cells(std::vector<Finding>& found) const {
   if (!same_mesh_ || cases_.size() < fewest_for_dead_cells) return;
   for (Eigen::Index f = 0; f < lowest_.rows(); ++f) {

@@ -49,6 +49,16 @@ void check_inputs(const Arguments& arguments, const model::BundleReader& bundle)
        .advice = "the bundle was trained without it, so that nothing says how much to conserve"});
 }
 
+// Where gas enters and how dense solids are, nothing but the furnace says.
+field::Furnace furnace_of(const Arguments& arguments, const model::BundleReader& bundle) {
+  if (auto furnace = bundle.furnace()) return *std::move(furnace);
+  throw UsageError(
+      {.what = option_of(arguments) + " needs a furnace description",
+       .where = bundle.file().where(),
+       .found = "none",
+       .advice = "describe the furnace to the store (elrom-data import --furnace) and train again"});
+}
+
 std::vector<field::FieldInfo> chosen_fields(const Arguments& arguments, const model::BundleReader& bundle) {
   std::vector<field::FieldInfo> chosen;
   for (const auto& info : bundle.info().fields)
@@ -78,6 +88,7 @@ Physics::Physics(const Arguments& arguments, const model::BundleReader& bundle, 
   check_cells(arguments, bundle, cells);
   check_fields(arguments, bundle);
   check_inputs(arguments, bundle);
+  settings_ = model::audit_settings(furnace_of(arguments, bundle));
   mesh_ = bundle.mesh();
   schema_ = bundle.info().schema;
   fields_ = chosen_fields(arguments, bundle);
@@ -88,11 +99,11 @@ PhysicsResult Physics::apply(const field::CaseInputs& inputs, std::span<float> v
       .mesh = mesh_, .schema = schema_, .inputs = inputs.values, .fields = fields_, .values = values};
   PhysicsResult result;
   try {
-    if (conserve_) result.change = model::conserve(view, values);
+    if (conserve_) result.change = model::conserve(view, values, {}, settings_);
   } catch (const NumericalError& error) {
     throw NumericalError("case " + inputs.name + ": " + error.what());
   }
-  if (audit_) result.audit = model::audit(view);
+  if (audit_) result.audit = model::audit(view, settings_);
   return result;
 }
 

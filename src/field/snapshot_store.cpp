@@ -14,6 +14,7 @@ struct SnapshotStore::Impl {
   io::Hdf5File file;
   Mesh mesh;
   InputSchema schema;
+  std::optional<Furnace> furnace;
   std::vector<FieldInfo> fields;
   std::vector<CaseRecord> cases;
 };
@@ -39,7 +40,9 @@ SnapshotStore SnapshotStore::open_here(const std::filesystem::path& path) {
   auto impl = std::make_unique<Impl>(Impl{.path = path, .file = std::move(file)});
   impl->mesh = read_mesh(impl->file.group("mesh"));
   impl->schema = detail::read_schema(impl->file);
+  impl->furnace = detail::read_furnace(impl->file);
   impl->fields = detail::read_fields(impl->file);
+  if (impl->furnace) impl->fields = impl->furnace->limited(std::move(impl->fields));
   impl->cases = detail::read_cases(impl->file, impl->schema.size(), impl->fields.size());
   const io::Shape shape{impl->cases.size(), impl->mesh.n_planes, impl->mesh.n_columns};
   for (const auto& field : impl->fields) impl->file.dataset("fields/" + field.name).expect_shape(shape);
@@ -49,6 +52,7 @@ SnapshotStore SnapshotStore::open_here(const std::filesystem::path& path) {
 std::size_t SnapshotStore::n_cases() const { return impl_->cases.size(); }
 const Mesh& SnapshotStore::mesh() const { return impl_->mesh; }
 const InputSchema& SnapshotStore::schema() const { return impl_->schema; }
+const std::optional<Furnace>& SnapshotStore::furnace() const { return impl_->furnace; }
 const std::vector<FieldInfo>& SnapshotStore::fields() const { return impl_->fields; }
 const std::vector<CaseRecord>& SnapshotStore::cases() const { return impl_->cases; }
 const std::filesystem::path& SnapshotStore::path() const { return impl_->path; }

@@ -109,6 +109,11 @@ field::Mesh BundleReader::mesh(const MeshPart& part) const {
   return mesh;
 }
 
+std::optional<field::Furnace> BundleReader::furnace() const {
+  if (!file_.has_text("furnace")) return std::nullopt;
+  return field::parse_furnace(file_.text("furnace"), file_.where() + ":furnace");
+}
+
 Guard BundleReader::guard() const { return Guard::load(file_, "guard", info_.schema); }
 
 std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, const Wanted& wanted) const {

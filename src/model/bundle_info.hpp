@@ -10,7 +10,7 @@
 namespace elrom::model {
 
 inline constexpr std::string_view bundle_kind = "elrom-bundle";
-inline constexpr FormatVersion bundle_format{1, 0};
+inline constexpr FormatVersion bundle_format{1, 1};  // 1.1: furnace
 
 /// Where a bundle keeps a field's model and its uncertainty.
 inline std::string field_prefix(const std::string& field) { return "fields/" + field; }

@@ -33,6 +33,7 @@ void Bundle::write(const std::filesystem::path& path) const {
   file.set_text("format", bundle_format.text());
   file.set_text("program", program_version());
   file.set_text("bundle", to_json({info, mesh.n_planes, mesh.n_columns, mesh.digest()}));
+  if (furnace) file.set_text("furnace", field::to_toml(*furnace));
   save_mesh(file, mesh);
   save_packed_mesh(file, mesh);
   guard.save(file, "guard");

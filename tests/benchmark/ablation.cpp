@@ -79,13 +79,12 @@ class Workbench {
         trainer_(elrom::torch::make_torch_trainer()),
         store_(field::SnapshotStore::open(options.store)) {
     const auto used = settings({});
-    std::vector<std::string> names;
-    for (const auto& record : store_.cases()) names.push_back(record.inputs.name);
-    const auto held = study::hold_out(names, used.split.held_out);
+    const auto held = study::hold_out(store_, study::held_out_patterns(store_, used, silent_log()));
     // Repeated runs judge noise, not skill: held out, but not judged.
     Rows rows = held.building;
     for (const std::size_t row : held.held_out)
-      if (!base::matches(names[row], "rep*")) rows.push_back(row);
+      if (!store_.furnace() || !store_.furnace()->is_repeat(store_.cases()[row].inputs.name))
+        rows.push_back(row);
     cases_ = study::study_cases(store_, used, rows, silent_log());
     rows_ = rows;
     for (std::size_t i = 0; i < rows.size(); ++i)

@@ -45,7 +45,13 @@ class SmallStudy {
 
   void write_store() {
     const auto mesh = field::make_furnace_mesh({}, 4, 3, 5);
-    field::SnapshotWriter writer(folder_ / "snapshots.h5", mesh, schema(), fields());
+    const field::Furnace furnace{.name = "small",
+                                 .solid_density = 2400,
+                                 .packing_limit = 0.65,
+                                 .held_out = {"load_*", "rep*"},
+                                 .repeats = {"rep*"},
+                                 .openings = {{.inputs = "primary_air"}}};
+    field::SnapshotWriter writer(folder_ / "snapshots.h5", mesh, schema(), fields(), furnace);
     base::Random random{base::Seed(3)};
     for (std::size_t i = 0; i < n_training + 2; ++i) {
       const double load = 0.4 + 0.05 * static_cast<double>(i);

@@ -37,7 +37,8 @@ Material gather(const StudyFiles& study) {
   };
   for (const auto& name : study.building) material.building.push_back(row_of(name));
   for (const auto& name : study.held_out)
-    if (!base::matches(name, "rep*")) material.scored.push_back(row_of(name));
+    if (!material.store.furnace() || !material.store.furnace()->is_repeat(name))
+      material.scored.push_back(row_of(name));
   if (material.scored.empty() || material.building.size() < 4)
     throw UsageError("a learning curve needs at least four training cases and one held-out case");
   material.cases = study::study_cases(material.store, study::read_settings(study.settings), material.building,

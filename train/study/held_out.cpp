@@ -26,6 +26,12 @@ HeldOut hold_out(const std::vector<std::string>& names, const std::vector<std::s
   return result;
 }
 
+HeldOut hold_out(const field::SnapshotStore& store, const std::vector<std::string>& patterns) {
+  std::vector<std::string> names;
+  for (const auto& record : store.cases()) names.push_back(record.inputs.name);
+  return hold_out(names, patterns);
+}
+
 void write_split(const std::filesystem::path& path, const SplitNames& split) {
   const nlohmann::ordered_json json{{"kind", "elrom-split"},        {"format", {1, 0}},
                                     {"program", program_version()}, {"by", split.by},

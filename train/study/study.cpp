@@ -67,7 +67,7 @@ struct Study::Impl {
         stop(std::move(stop_)),
         lock(folder / ".lock"),
         store(field::SnapshotStore::open(store_path(folder, settings))),
-        rows(hold_out(names_of(store), settings.split.held_out)),
+        rows(held_out_rows()),
         cases(study_cases(store, settings, rows.building, log)),
         fields(chosen_fields(store, settings)),
         cache(folder / "stages", log),
@@ -80,10 +80,9 @@ struct Study::Impl {
     write_names();
   }
 
-  static std::vector<std::string> names_of(const field::SnapshotStore& store) {
-    std::vector<std::string> names;
-    for (const auto& record : store.cases()) names.push_back(record.inputs.name);
-    return names;
+  HeldOut held_out_rows() {
+    settings.split.held_out = held_out_patterns(store, settings, log);
+    return hold_out(store, *settings.split.held_out);
   }
 
   [[nodiscard]] base::Seed seed() const { return base::Seed(static_cast<std::uint64_t>(settings.seed)); }

@@ -14,6 +14,7 @@ namespace {
 // same bytes.
 std::string content_digest(const StudyBundle& bundle, const std::map<std::string, FieldStage>& stages) {
   base::Sha256 digest;
+  if (bundle.cases.furnace) digest.add(field::to_toml(*bundle.cases.furnace));
   digest.add(bundle.method).add(bundle.store_digest).add(bundle.settings_digest).add(program_version());
   for (const auto& [field, stage] : stages) digest.add(field).add(stage.file.text("stage_digest"));
   return digest.hex();
@@ -55,6 +56,7 @@ void write_study_bundle(const std::filesystem::path& path, const StudyBundle& st
   }
   bundle.info.accuracy_json = accuracy.dump();
   bundle.mesh = study.cases.mesh;
+  bundle.furnace = study.cases.furnace;
   bundle.guard = model::Guard(study.cases.schema, study.cases.inputs, study.cases.names, study.cases.loads);
   bundle.write(path);
 }

@@ -4,12 +4,14 @@
 // Thread rule: plain data.
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/field/furnace.hpp"
 #include "elrom/field/mesh.hpp"
 #include "elrom/field/symmetry.hpp"
 #include "elrom/math/matrix.hpp"
@@ -24,6 +26,7 @@ struct CaseSet {
   std::vector<double> loads;       //!< (n_cases)
   MatrixD inputs;                  //!< SI, (n_cases, n_inputs)
   std::vector<Mirror> mirrors;     ///< declared and switched on; empty: none
+  std::optional<Furnace> furnace;  ///< where somebody described it
   [[nodiscard]] std::size_t n_cases() const { return names.size(); }
 };
 

@@ -2,6 +2,7 @@
 // Suspicious data: what `elrom-data check` tells, and what import refuses or drops.
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +45,9 @@ class Checker {
   void add(const field::SnapshotStore& store);
   /// A file that could not even be read.
   void add_unreadable(const std::string& name, const std::string& reason);
+
+  /// Leaves cases out of every comparison but that of single cells (dead_cells).
+  void forget(const std::set<std::string>& names);
 
   [[nodiscard]] const std::vector<CaseSummary>& cases() const { return cases_; }
   /// Everything found, worst first, in the order of the cases.
