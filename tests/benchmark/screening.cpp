@@ -8,6 +8,7 @@
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/networks/records.hpp"
+#include "elrom/study/held_out.hpp"
 #include "elrom/study/study.hpp"
 #include "sequential_screening.hpp"
 #include "support/benchmark.hpp"

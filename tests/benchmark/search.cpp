@@ -10,6 +10,7 @@
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/networks/records.hpp"
+#include "elrom/study/held_out.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/torch/trainer.hpp"
 #include "support/benchmark.hpp"
