@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
+#include "../../predict/fields/hdf_writer.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/store_summary.hpp"
-#include "hdf_writer.hpp"
 #include "support/sample_run.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/throws.hpp"

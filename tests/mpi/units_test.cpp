@@ -1,6 +1,6 @@
 // What travels between ranks arrives as it was sent.
 
-#include "mpi/units.hpp"
+#include "units.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

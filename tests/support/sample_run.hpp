@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "prediction.hpp"
+#include "../../predict/fields/prediction.hpp"
 #include "support/mesh_part.hpp"
 
 namespace elrom::test {
