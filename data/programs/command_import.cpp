@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
+#include "elrom/base/comma_list.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/ingest/import_checked.hpp"
@@ -59,10 +60,9 @@ void add_import(CLI::App& program, Work& chosen) {
           "Furnace description that the store is to carry: openings, mirrors, limits, held-out cases "
           "[default: MESH.toml beside the mesh, where it is there]; on an existing store also without FILE")
       ->type_name("FURNACE.toml");
-  command
-      ->add_option("--fields", options->fields,
-                   "Fields of a new store, separated by commas [default: the nine standard fields]")
-      ->delimiter(',')
+  base::comma_list(
+      command->add_option("--fields", options->fields,
+                          "Fields of a new store, separated by commas [default: the nine standard fields]"))
       ->type_name("NAME,...");
   command->add_option("--threads", options->n_threads, "Processor threads")
       ->capture_default_str()

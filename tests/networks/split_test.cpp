@@ -53,7 +53,7 @@ TEST(Split, FewCasesStillFillEveryPart) {
 }
 
 TEST(Split, ByCaseKeepsThePlanesOfACaseTogether) {
-  const auto records = split_records(rising_loads(20), 7, SplitSettings{}, base::Seed(1));
+  const auto records = split_records(rising_loads(20), 7, {}, base::Seed(1));
 
   for (std::size_t r = 0; r < records.size(); ++r) EXPECT_EQ(records[r], records[r - r % 7]);
 }

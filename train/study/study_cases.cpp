@@ -39,7 +39,6 @@ field::CaseSet study_cases(const field::SnapshotStore& store, const Settings& se
   field::CaseSet cases;
   cases.mesh = store.mesh();
   cases.schema = store.schema();
-  cases.furnace = store.furnace();
   cases.inputs = store.inputs(rows);
   for (const auto row : rows) {
     cases.names.push_back(store.cases()[row].inputs.name);
