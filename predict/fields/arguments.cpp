@@ -6,7 +6,7 @@
 #include "elrom/base/comma_list.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/version.hpp"
-#include "ranges.hpp"
+#include "elrom/fields/ranges.hpp"
 
 namespace elrom::fields {
 namespace {
