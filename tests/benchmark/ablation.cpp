@@ -22,7 +22,7 @@
 #include "elrom/methods/peers.hpp"
 #include "elrom/methods/pod_mlp.hpp"
 #include "elrom/model/composite_models.hpp"
-#include "elrom/networks/split.hpp"
+#include "elrom/study/held_out.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/torch/trainer.hpp"
 #include "support/benchmark.hpp"

@@ -32,7 +32,7 @@ struct Options : benchmark::Arguments {
   std::filesystem::path folder;
 };
 
-struct networks::Trial {
+struct Trial {
   std::string name;
   Names held_out;
 };
@@ -41,8 +41,8 @@ bool matches_any(const std::string& name, const Names& patterns) {
   return std::ranges::any_of(patterns, [&](const auto& p) { return base::matches(name, p); });
 }
 
-std::vector<networks::Trial> trials_of(const Options& options) {
-  std::vector<networks::Trial> trials{{"held out", options.held_out}};
+std::vector<Trial> trials_of(const Options& options) {
+  std::vector<Trial> trials{{"held out", options.held_out}};
   const auto store = field::SnapshotStore::open(options.store);
   std::vector<field::CaseInputs> cases;
   for (const auto& record : store.cases())
@@ -51,7 +51,7 @@ std::vector<networks::Trial> trials_of(const Options& options) {
       cases.push_back(record.inputs);
   std::ranges::stable_sort(cases, {}, &field::CaseInputs::load);
   for (std::size_t s = 0; s < options.sets; ++s) {
-    networks::Trial trial{fmt::format("set {}", s + 1), {}};
+    Trial trial{fmt::format("set {}", s + 1), {}};
     for (std::size_t i = s; i < cases.size(); i += options.sets) trial.held_out.push_back(cases[i].name);
     trials.push_back(std::move(trial));
   }
@@ -59,7 +59,7 @@ std::vector<networks::Trial> trials_of(const Options& options) {
 }
 
 /// The report of one trained trial. Folders that are kept go on from where they were.
-Json report_of(const networks::Trial& trial, const Options& options, const std::filesystem::path& folder) {
+Json report_of(const Trial& trial, const Options& options, const std::filesystem::path& folder) {
   Names patterns;
   for (const auto* names : {&trial.held_out, &options.repeats})
     for (const auto& name : *names) patterns.push_back("\"" + name + "\"");

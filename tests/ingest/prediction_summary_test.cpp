@@ -2,7 +2,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/store_summary.hpp"
-#include "hdf_writer.hpp"
+#include "elrom/model/prediction_file.hpp"
 #include "support/sample_run.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/throws.hpp"
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 TEST(PredictionSummary, TellsCaseValidityModelInputsAndRanges) {
   const test::TemporaryFolder folder;
   const test::SampleRun sample;
-  fields::write_hdf(sample.run, sample.prediction(), folder / "a.hdf");
+  model::write_prediction(sample.frame, sample.prediction(), folder / "a.hdf");
 
   const auto description = describe_prediction(folder / "a.hdf");
 

@@ -8,6 +8,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
+#include "trial_columns.hpp"
 
 namespace elrom::networks {
 namespace {
@@ -76,28 +77,28 @@ std::vector<double> rungs_of(const std::string& text) {
   return rungs;
 }
 
-constexpr const char* columns =
-    "learning_rate, n_layers, n_units, batch_size, weight_decay, dropout, activation, i_seed, value, epochs, "
-    "pruned, "
-    "diverged, seconds, rungs";
+const std::vector<std::string> hyperparameter_columns(hyperparameter_names.begin(),
+                                                      hyperparameter_names.end());
+const std::string columns =
+    base::join(hyperparameter_columns, ", ") + ", i_seed, value, epochs, pruned, diverged, seconds, rungs";
+
+const std::string schema =
+    "CREATE TABLE IF NOT EXISTS trials (number INTEGER PRIMARY KEY, search TEXT NOT NULL, name TEXT, key "
+    "TEXT NOT NULL, " +
+    base::join(column_declarations(), ", ") +
+    ", i_seed INTEGER NOT NULL, value REAL NOT NULL, epochs INTEGER, pruned INTEGER, diverged INTEGER, "
+    "seconds REAL, rungs TEXT, UNIQUE (search, key, i_seed))";
 
 Trial trial_of(const Statement& row, int first) {
   Trial trial;
-  auto& h = trial.hyperparameters;
-  h.learning_rate = row.real(first);
-  h.n_layers = row.whole(first + 1);
-  h.n_units = row.whole(first + 2);
-  h.batch_size = row.whole(first + 3);
-  h.weight_decay = row.real(first + 4);
-  h.dropout = row.real(first + 5);
-  h.activation = model::activation_of(row.text(first + 6));
-  trial.i_seed = row.whole(first + 7);
-  trial.value = row.real(first + 8);
-  trial.epochs = row.whole(first + 9);
-  trial.pruned = row.whole(first + 10) != 0;
-  trial.diverged = row.whole(first + 11) != 0;
-  trial.seconds = row.real(first + 12);
-  trial.rungs = rungs_of(row.text(first + 13));
+  const int rest = read_hyperparameters(row, first, trial.hyperparameters);
+  trial.i_seed = row.whole(rest);
+  trial.value = row.real(rest + 1);
+  trial.epochs = row.whole(rest + 2);
+  trial.pruned = row.whole(rest + 3) != 0;
+  trial.diverged = row.whole(rest + 4) != 0;
+  trial.seconds = row.real(rest + 5);
+  trial.rungs = rungs_of(row.text(rest + 6));
   return trial;
 }
 
@@ -110,6 +111,14 @@ struct TrialStore::Impl {
 
   ~Impl() { sqlite3_close(database); }
   void run(const char* sql) const { Statement(database, where, sql).next(); }
+  // A file from before a hyperparameter was searched holds trials at its default.
+  void add_missing_columns() const {
+    for (const auto& name : hyperparameter_columns) {
+      Statement row(database, where, "SELECT 1 FROM pragma_table_info('trials') WHERE name = ?");
+      if (!row.bind(1, name).next())
+        run(("ALTER TABLE trials ADD COLUMN " + declaration_with_default(name)).c_str());
+    }
+  }
   void check_version() const {
     Statement row(database, where, "SELECT value FROM about WHERE key = 'format_major'");
     const int found = row.next() ? row.whole(0) : 0;
@@ -134,14 +143,7 @@ TrialStore::TrialStore(const std::filesystem::path& path) : impl_(std::make_uniq
   impl_->run("PRAGMA synchronous = NORMAL");
   impl_->run("BEGIN IMMEDIATE");
   impl_->run("CREATE TABLE IF NOT EXISTS about (key TEXT PRIMARY KEY, value)");
-  impl_->run(
-      "CREATE TABLE IF NOT EXISTS trials (number INTEGER PRIMARY KEY, search TEXT NOT NULL, name TEXT, key "
-      "TEXT NOT NULL, "
-      "learning_rate REAL, n_layers INTEGER, n_units INTEGER, batch_size INTEGER, weight_decay REAL, dropout "
-      "REAL, "
-      "activation TEXT, i_seed INTEGER NOT NULL, value REAL NOT NULL, epochs INTEGER, pruned INTEGER, "
-      "diverged INTEGER, "
-      "seconds REAL, rungs TEXT, UNIQUE (search, key, i_seed))");
+  impl_->run(schema.c_str());
   Statement(impl_->database, impl_->where,
             "INSERT OR IGNORE INTO about VALUES ('kind', 'elrom-trials'), ('format_major', 1), "
             "('format_minor', 0), ('program', ?)")
@@ -149,6 +151,7 @@ TrialStore::TrialStore(const std::filesystem::path& path) : impl_(std::make_uniq
       .next();
   impl_->run("COMMIT");
   impl_->check_version();
+  impl_->add_missing_columns();
 }
 
 TrialStore::~TrialStore() = default;
@@ -167,26 +170,19 @@ void TrialStore::add(const std::string& search, const std::string& name, const s
                      const Trial& trial) {
   const std::scoped_lock lock(impl_->mutex);
   const auto sql = std::string("INSERT OR REPLACE INTO trials (search, name, key, ") + columns +
-                   ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-  const auto& h = trial.hyperparameters;
-  Statement(impl_->database, impl_->where, sql.c_str())
-      .bind(1, search)
-      .bind(2, name)
-      .bind(3, key)
-      .bind(4, h.learning_rate)
-      .bind(5, h.n_layers)
-      .bind(6, h.n_units)
-      .bind(7, h.batch_size)
-      .bind(8, h.weight_decay)
-      .bind(9, h.dropout)
-      .bind(10, std::string(model::name_of(h.activation)))
-      .bind(11, trial.i_seed)
-      .bind(12, trial.value)
-      .bind(13, trial.epochs)
-      .bind(14, trial.pruned ? 1 : 0)
-      .bind(15, trial.diverged ? 1 : 0)
-      .bind(16, trial.seconds)
-      .bind(17, rungs_text(trial.rungs))
+                   ") VALUES (?, ?, ?, " +
+                   base::join(std::vector<std::string>(hyperparameter_columns.size(), "?"), ", ") +
+                   ", ?, ?, ?, ?, ?, ?, ?)";
+  Statement row(impl_->database, impl_->where, sql.c_str());
+  row.bind(1, search).bind(2, name).bind(3, key);
+  const int rest = bind_hyperparameters(row, 4, trial.hyperparameters);
+  row.bind(rest, trial.i_seed)
+      .bind(rest + 1, trial.value)
+      .bind(rest + 2, trial.epochs)
+      .bind(rest + 3, trial.pruned ? 1 : 0)
+      .bind(rest + 4, trial.diverged ? 1 : 0)
+      .bind(rest + 5, trial.seconds)
+      .bind(rest + 6, rungs_text(trial.rungs))
       .next();
 }
 

@@ -23,7 +23,7 @@ struct FieldInfo {
 /// Packing limit of spheres in the source's EL3D: no time-averaged solid volume fraction lies above it.
 inline constexpr double packing_limit = 0.65;
 
-/// The nine fields in the order of design.md section 1 (velocities
+/// The nine fields in the order of the source (velocities
 /// of solids, of gas, pressure, diameter, fraction).
 [[nodiscard]] std::span<const FieldInfo> standard_fields();
 /// Information on a field by name; an unknown name gives a scalar without bounds in `unit`.
