@@ -6,8 +6,8 @@
 
 #include "elrom/fields/arguments.hpp"
 #include "elrom/model/prediction_file.hpp"
-#include "physics.hpp"
-#include "text_writer.hpp"
+#include "elrom/fields/physics.hpp"
+#include "elrom/fields/text_writer.hpp"
 #include "timing.hpp"
 
 namespace elrom::fields {

@@ -1,4 +1,4 @@
-#include "physics.hpp"
+#include "elrom/fields/physics.hpp"
 
 #include <algorithm>
 

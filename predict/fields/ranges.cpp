@@ -1,4 +1,4 @@
-#include "ranges.hpp"
+#include "elrom/fields/ranges.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "text_writer.hpp"
+#include "elrom/fields/text_writer.hpp"
 
 #include <array>
 #include <charconv>
@@ -147,14 +147,6 @@ void write_fluent(const model::PredictionFrame& frame, const Coordinates& coordi
     }
     text += ")\n";
   }
-}
-
-void write_text(Format format, const model::PredictionFrame& frame, const Coordinates& coordinates,
-                const model::Prediction& prediction, std::string& text) {
-  check(format != Format::hdf, "text export: a text format");
-  if (format == Format::csv) write_csv(frame, coordinates, prediction, text);
-  if (format == Format::txt) write_sfw3d(frame, coordinates, prediction, text);
-  if (format == Format::ip) write_fluent(frame, coordinates, prediction, text);
 }
 
 }  // namespace elrom::fields

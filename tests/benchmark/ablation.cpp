@@ -12,6 +12,7 @@
 
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "elrom/base/text.hpp"
@@ -326,20 +327,13 @@ class Workbench {
 int main(int argc, char** argv) {
   return base::run_app("bench-ablation", [&] {
     Options options;
-    CLI::App app("Error and training time of the networks' options on real cases, one switched at a time");
-    options.add_to(app, "snapshot store");
-    app.get_option("--store")->required();
-    app.add_option("--fields", options.fields, "fields, separated by commas [default: all]")->delimiter(',');
-    app.add_option("--options", options.variants, "rows of the table, separated by commas [default: all]")
-        ->delimiter(',');
-    app.add_option("--source-trials", options.source_trials,
-                   "of the search in the source's method (it has 50)")
-        ->capture_default_str();
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-    }
+    benchmark::CommandLine line(
+        "Error and training time of the networks' options on real cases, one switched at a time");
+    options.add_to(line, "snapshot store", benchmark::CommandLine::Need::required);
+    line.add_list("--fields", options.fields, "fields, separated by commas [default: all]");
+    line.add_list("--options", options.variants, "rows of the table, separated by commas [default: all]");
+    line.add("--source-trials", options.source_trials, "of the search in the source's method (it has 50)");
+    if (const auto status = line.parse(argc, argv)) return *status;
     Workbench(options).run();
     return 0;
   });

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
@@ -223,26 +224,17 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   return base::run_app("bench-accuracy", [&] {
     Options options;
-    CLI::App app(
+    benchmark::CommandLine line(
         "Whether ELROM is at or below every simple peer, and its intervals cover what they promise, on the "
         "held-out "
         "cases and on other sets of cases in their place (NRMSE; 1 = no skill).");
-    options.add_to(app, "snapshot store");
-    app.get_option("--store")->required();
-    app.add_option("--sets", options.sets, "further trials, each holding back a share of the training cases")
-        ->capture_default_str();
-    app.add_option("--effort", options.effort, "of the studies")->capture_default_str();
-    app.add_option("--set", options.settings, "key=value: a setting of the studies; repeatable")
-        ->allow_extra_args(false);
-    app.add_option("--folder", options.folder, "keep the studies here, and go on from those that are there");
-    app.add_option("--held-out", options.held_out, "names or patterns of the held-out cases")
-        ->delimiter(',')
-        ->capture_default_str();
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-    }
+    options.add_to(line, "snapshot store", benchmark::CommandLine::Need::required);
+    line.add("--sets", options.sets, "further trials, each holding back a share of the training cases");
+    line.add("--effort", options.effort, "of the studies");
+    line.add_repeated("--set", options.settings, "key=value: a setting of the studies; repeatable");
+    line.add("--folder", options.folder, "keep the studies here, and go on from those that are there");
+    line.add_list("--held-out", options.held_out, "names or patterns of the held-out cases");
+    if (const auto status = line.parse(argc, argv)) return *status;
     options.store = std::filesystem::absolute(options.store);
     if (options.small)
       options.settings.insert(options.settings.end(),

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "elrom/field/snapshot_store.hpp"
 #include "support/benchmark.hpp"
 #include "support/temporary_folder.hpp"

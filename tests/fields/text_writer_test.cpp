@@ -1,4 +1,4 @@
-#include "text_writer.hpp"
+#include "elrom/fields/text_writer.hpp"
 
 #include <gmock/gmock.h>
 

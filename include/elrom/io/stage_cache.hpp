@@ -43,6 +43,7 @@ class StageClock {
   std::map<std::string, Entry> entries_;
 };
 
+/// Of the stage's name, the version of its code and every member.
 template <class Stage>
 [[nodiscard]] std::string stage_key(const Stage& stage) {
   return base::digest_of_members(std::string_view(Stage::stage), Stage::version, stage);
