@@ -41,7 +41,7 @@ Json fields_of(const io::Hdf5Group& fields) {
 
 Json read_prediction(const std::filesystem::path& path) {
   const auto file = io::Hdf5File::open(path);
-  io::check_kind(file, "elrom-prediction", {1, 1});
+  io::check_kind(file, io::kinds::prediction);
   const auto elrom = file.group("elrom");
   Json result{{"kind", "prediction"}, {"case", elrom.text("case")}, {"load", number_of(elrom, "load")}};
   for (const char* const key :

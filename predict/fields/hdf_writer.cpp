@@ -10,7 +10,6 @@
 namespace elrom::fields {
 namespace {
 
-constexpr FormatVersion prediction_format{1, 1};
 
 /// A field's values: planes x columns, or, of a region, one cell after the other.
 io::Shape shape_of(const Run& run) {
@@ -127,7 +126,7 @@ void write_vtk(const Run& run, const io::Hdf5Group& file, const io::Hdf5Group& e
 HdfWriter::HdfWriter(const Run& run, const field::CaseInputs& inputs, const model::Assessment& assessment,
                      const std::filesystem::path& path)
     : run_(run), file_(io::Hdf5File::create(path)) {
-  io::write_kind(file_, "elrom-prediction", prediction_format);
+  io::write_kind(file_, io::kinds::prediction);
   write_identity(run, inputs, assessment, file_);
   const auto elrom = file_.create_group("elrom");
   write_identity(run, inputs, assessment, elrom);

@@ -35,7 +35,7 @@ SnapshotStore SnapshotStore::open(const std::filesystem::path& path) {
 
 SnapshotStore SnapshotStore::open_here(const std::filesystem::path& path) {
   auto file = io::Hdf5File::open(path);
-  io::check_kind(file, detail::store_kind, detail::store_format);
+  io::check_kind(file, io::kinds::snapshots);
   auto impl = std::make_unique<Impl>(Impl{.path = path, .file = std::move(file)});
   impl->mesh = read_mesh(impl->file.group("mesh"));
   impl->schema = detail::read_schema(impl->file);
@@ -94,7 +94,7 @@ MatrixF SnapshotStore::read(std::string_view field, std::span<const std::size_t>
 
 std::string SnapshotStore::digest(std::span<const std::size_t> cases) const {
   base::Sha256 hash;
-  hash.add(std::string_view(detail::store_kind)).add(std::string_view(impl_->mesh.digest()));
+  hash.add(io::kinds::snapshots.name).add(std::string_view(impl_->mesh.digest()));
   for (const auto& input : impl_->schema.inputs())
     hash.add(std::string_view(input.name)).add(std::string_view(input.unit));
   for (const auto& field : impl_->fields)

@@ -85,7 +85,7 @@ struct SnapshotWriter::Impl {
 
   void start_new(const Mesh& mesh, const InputSchema& schema) {
     file = io::Hdf5File::create(target.temporary());
-    io::write_kind(*file, detail::store_kind, detail::store_format);
+    io::write_kind(*file, io::kinds::snapshots);
     write_mesh(file->create_group("mesh"), mesh);
     detail::write_schema(*file, schema);
     detail::create_fields(*file, fields, mesh);

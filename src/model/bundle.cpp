@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <functional>
 #include <numeric>
 
@@ -12,40 +11,9 @@
 #include "elrom/base/text.hpp"
 
 namespace elrom::model {
-namespace {
-
-int major_of(const std::string& format) {
-  int major = -1;
-  const auto dot = format.find('.');
-  if (dot != std::string::npos) std::from_chars(format.data(), format.data() + dot, major);
-  return major;
-}
-
-void check_kind(const io::TensorFile& file) {
-  const std::string kind = file.has_text("kind") ? file.text("kind") : "none";
-  if (kind != bundle_kind) {
-    throw InputError({.what = "not a bundle",
-                      .where = file.where(),
-                      .found = "kind '" + kind + "'",
-                      .expected = "'" + std::string(bundle_kind) + "'"});
-  }
-  const auto& format = file.text("format");
-  if (major_of(format) != bundle_format.major) {
-    throw InputError({.what = "bundle of another format version",
-                      .where = file.where(),
-                      .found = format,
-                      .expected = std::to_string(bundle_format.major) + ".x",
-                      .advice = "use the ELROM that wrote it (" +
-                                (file.has_text("program") ? file.text("program") : "unknown") +
-                                ") or train again"});
-  }
-}
-
-}  // namespace
-
 BundleReader::BundleReader(const std::filesystem::path& path, io::Verify verify)
     : file_(io::TensorFile::open(path, verify)) {
-  check_kind(file_);
+  io::check_kind(file_, io::kinds::bundle);
   auto description = bundle_description(file_.text("bundle"), file_.where());
   info_ = std::move(description.info);
   n_planes_ = description.n_planes;

@@ -1,67 +1,13 @@
 #include "elrom/networks/trial_store.hpp"
 
-#include <sqlite3.h>
-
 #include <map>
 #include <mutex>
 
-#include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/sql/database.hpp"
 
 namespace elrom::networks {
 namespace {
-
-constexpr int format_major = 1;
-
-class Statement {
- public:
-  Statement(sqlite3* database, const std::string& where, const char* sql)
-      : database_(database), where_(where) {
-    require(sqlite3_prepare_v2(database, sql, -1, &statement_, nullptr) == SQLITE_OK);
-  }
-  ~Statement() { sqlite3_finalize(statement_); }
-  Statement(const Statement&) = delete;
-  Statement& operator=(const Statement&) = delete;
-
-  Statement& bind(int i, const std::string& text) {
-    require(sqlite3_bind_text(statement_, i, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT) ==
-            SQLITE_OK);
-    return *this;
-  }
-  Statement& bind(int i, int value) {
-    require(sqlite3_bind_int(statement_, i, value) == SQLITE_OK);
-    return *this;
-  }
-  Statement& bind(int i, double value) {
-    require(sqlite3_bind_double(statement_, i, value) == SQLITE_OK);
-    return *this;
-  }
-  /// @return whether there is a row
-  bool next() {
-    const int result = sqlite3_step(statement_);
-    require(result == SQLITE_ROW || result == SQLITE_DONE);
-    return result == SQLITE_ROW;
-  }
-  [[nodiscard]] int whole(int i) const { return sqlite3_column_int(statement_, i); }
-  [[nodiscard]] double real(int i) const { return sqlite3_column_double(statement_, i); }
-  [[nodiscard]] std::string text(int i) const {
-    const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, i));
-    return text == nullptr ? std::string() : std::string(text);
-  }
-
- private:
-  void require(bool ok) const {
-    if (!ok)
-      throw InputError({.what = "trial store cannot be used",
-                        .where = where_,
-                        .found = sqlite3_errmsg(database_),
-                        .advice = "remove the file to search anew"});
-  }
-  sqlite3* database_;
-  const std::string& where_;
-  sqlite3_stmt* statement_ = nullptr;
-};
 
 std::string rungs_text(const std::vector<double>& rungs) {
   std::vector<std::string> parts;
@@ -81,21 +27,28 @@ constexpr const char* columns =
     "pruned, "
     "diverged, seconds, rungs";
 
-Trial trial_of(const Statement& row, int first) {
+constexpr const char* schema =
+    "CREATE TABLE IF NOT EXISTS trials (number INTEGER PRIMARY KEY, search TEXT NOT NULL, name TEXT, key "
+    "TEXT NOT NULL, learning_rate REAL, n_layers INTEGER, n_units INTEGER, batch_size INTEGER, weight_decay "
+    "REAL, dropout REAL, activation TEXT, i_seed INTEGER NOT NULL, value REAL NOT NULL, epochs INTEGER, "
+    "pruned INTEGER, diverged INTEGER, seconds REAL, rungs TEXT, UNIQUE (search, key, i_seed))";
+
+Trial trial_of(const sql::Statement& row, int first) {
+  const auto whole = [&](int i) { return static_cast<int>(row.integer(i)); };
   Trial trial;
   auto& h = trial.hyperparameters;
   h.learning_rate = row.real(first);
-  h.n_layers = row.whole(first + 1);
-  h.n_units = row.whole(first + 2);
-  h.batch_size = row.whole(first + 3);
+  h.n_layers = whole(first + 1);
+  h.n_units = whole(first + 2);
+  h.batch_size = whole(first + 3);
   h.weight_decay = row.real(first + 4);
   h.dropout = row.real(first + 5);
   h.activation = model::activation_of(row.text(first + 6));
-  trial.i_seed = row.whole(first + 7);
+  trial.i_seed = whole(first + 7);
   trial.value = row.real(first + 8);
-  trial.epochs = row.whole(first + 9);
-  trial.pruned = row.whole(first + 10) != 0;
-  trial.diverged = row.whole(first + 11) != 0;
+  trial.epochs = whole(first + 9);
+  trial.pruned = row.integer(first + 10) != 0;
+  trial.diverged = row.integer(first + 11) != 0;
   trial.seconds = row.real(first + 12);
   trial.rungs = rungs_of(row.text(first + 13));
   return trial;
@@ -104,60 +57,19 @@ Trial trial_of(const Statement& row, int first) {
 }  // namespace
 
 struct TrialStore::Impl {
-  sqlite3* database = nullptr;
-  std::string where;
+  explicit Impl(const std::filesystem::path& path) : database(path, io::kinds::trials, schema) {}
+  sql::Database database;
   mutable std::mutex mutex;
-
-  ~Impl() { sqlite3_close(database); }
-  void run(const char* sql) const { Statement(database, where, sql).next(); }
-  void check_version() const {
-    Statement row(database, where, "SELECT value FROM about WHERE key = 'format_major'");
-    const int found = row.next() ? row.whole(0) : 0;
-    if (found == format_major) return;
-    throw InputError({.what = "trial store of another version",
-                      .where = where,
-                      .found = std::to_string(found),
-                      .expected = std::to_string(format_major),
-                      .advice = "remove the file to search anew"});
-  }
 };
 
-TrialStore::TrialStore(const std::filesystem::path& path) : impl_(std::make_unique<Impl>()) {
-  impl_->where = path.string();
-  if (sqlite3_open(path.c_str(), &impl_->database) != SQLITE_OK) {
-    throw InputError({.what = "trial store cannot be opened",
-                      .where = path.string(),
-                      .found = sqlite3_errmsg(impl_->database)});
-  }
-  sqlite3_busy_timeout(impl_->database, 10000);
-  impl_->run("PRAGMA journal_mode = WAL");
-  impl_->run("PRAGMA synchronous = NORMAL");
-  impl_->run("BEGIN IMMEDIATE");
-  impl_->run("CREATE TABLE IF NOT EXISTS about (key TEXT PRIMARY KEY, value)");
-  impl_->run(
-      "CREATE TABLE IF NOT EXISTS trials (number INTEGER PRIMARY KEY, search TEXT NOT NULL, name TEXT, key "
-      "TEXT NOT NULL, "
-      "learning_rate REAL, n_layers INTEGER, n_units INTEGER, batch_size INTEGER, weight_decay REAL, dropout "
-      "REAL, "
-      "activation TEXT, i_seed INTEGER NOT NULL, value REAL NOT NULL, epochs INTEGER, pruned INTEGER, "
-      "diverged INTEGER, "
-      "seconds REAL, rungs TEXT, UNIQUE (search, key, i_seed))");
-  Statement(impl_->database, impl_->where,
-            "INSERT OR IGNORE INTO about VALUES ('kind', 'elrom-trials'), ('format_major', 1), "
-            "('format_minor', 0), ('program', ?)")
-      .bind(1, program_version())
-      .next();
-  impl_->run("COMMIT");
-  impl_->check_version();
-}
+TrialStore::TrialStore(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
 
 TrialStore::~TrialStore() = default;
 
 std::optional<Trial> TrialStore::find(const std::string& search, const std::string& key, int i_seed) const {
   const std::scoped_lock lock(impl_->mutex);
-  const auto sql =
-      std::string("SELECT ") + columns + " FROM trials WHERE search = ? AND key = ? AND i_seed = ?";
-  Statement row(impl_->database, impl_->where, sql.c_str());
+  auto row = impl_->database.prepare(std::string("SELECT ") + columns +
+                                     " FROM trials WHERE search = ? AND key = ? AND i_seed = ?");
   row.bind(1, search).bind(2, key).bind(3, i_seed);
   if (!row.next()) return std::nullopt;
   return trial_of(row, 0);
@@ -166,10 +78,10 @@ std::optional<Trial> TrialStore::find(const std::string& search, const std::stri
 void TrialStore::add(const std::string& search, const std::string& name, const std::string& key,
                      const Trial& trial) {
   const std::scoped_lock lock(impl_->mutex);
-  const auto sql = std::string("INSERT OR REPLACE INTO trials (search, name, key, ") + columns +
-                   ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+  const auto insert = std::string("INSERT OR REPLACE INTO trials (search, name, key, ") + columns +
+                      ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
   const auto& h = trial.hyperparameters;
-  Statement(impl_->database, impl_->where, sql.c_str())
+  impl_->database.prepare(insert)
       .bind(1, search)
       .bind(2, name)
       .bind(3, key)
@@ -192,8 +104,8 @@ void TrialStore::add(const std::string& search, const std::string& name, const s
 
 std::vector<TrialStore::Search> TrialStore::searches() const {
   const std::scoped_lock lock(impl_->mutex);
-  const auto sql = std::string("SELECT search, name, ") + columns + " FROM trials ORDER BY number";
-  Statement row(impl_->database, impl_->where, sql.c_str());
+  auto row = impl_->database.prepare(std::string("SELECT search, name, ") + columns +
+                                     " FROM trials ORDER BY number");
   std::vector<Search> result;
   std::map<std::string, std::size_t> place;
   while (row.next()) {

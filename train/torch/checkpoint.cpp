@@ -5,7 +5,6 @@
 
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
-#include "elrom/base/version.hpp"
 #include "elrom/io/tensor_file.hpp"
 
 namespace elrom::torch {
@@ -13,7 +12,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr FormatVersion format{1, 0};
 
 void add(base::Sha256& sha, const MatrixF& matrix) {
   sha.add_value<std::int64_t>(matrix.rows()).add_value<std::int64_t>(matrix.cols());
@@ -81,9 +79,7 @@ std::string training_digest(const networks::TrainingProblem& problem, const netw
 
 void save_checkpoint(const std::filesystem::path& path, const std::string& digest, Training& training) {
   io::TensorFile file;
-  file.set_text("kind", "elrom-checkpoint");
-  file.set_text("format", format.text());
-  file.set_text("program", program_version());
+  io::write_kind(file, io::kinds::checkpoint);
   file.set_text("training", digest);
   file.set_text(
       "state",
@@ -100,7 +96,8 @@ bool load_checkpoint(const std::filesystem::path& path, const std::string& diges
   if (path.empty() || !std::filesystem::exists(path, ignored)) return false;
   try {
     const auto file = io::TensorFile::open(path);
-    if (file.text("kind") != "elrom-checkpoint" || file.text("training") != digest) return false;
+    io::check_kind(file, io::kinds::checkpoint);
+    if (file.text("training") != digest) return false;
     load(file, training);
     return true;
   } catch (const InputError&) {
