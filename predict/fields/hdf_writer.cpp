@@ -10,7 +10,6 @@
 namespace elrom::fields {
 namespace {
 
-
 /// A field's values: planes x columns, or, of a region, one cell after the other.
 io::Shape shape_of(const Run& run) {
   if (run.average || !run.cells.whole_planes) return {run.n_values()};

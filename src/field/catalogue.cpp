@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "elrom/base/text.hpp"
+
 namespace elrom::field {
 
 std::span<const FieldInfo> standard_fields() {
@@ -36,6 +38,14 @@ FieldInfo field_info(std::string_view name, std::string_view unit) {
       std::find_if(known.begin(), known.end(), [&](const FieldInfo& f) { return f.name == name; });
   if (found != known.end()) return *found;
   return {.name = std::string(name), .meaning = std::string(name), .unit = std::string(unit)};
+}
+
+Problem unknown_field(std::span<const FieldInfo> known, std::string_view name, const std::string& where) {
+  std::vector<std::string> names;
+  for (const auto& info : known) names.push_back(info.name);
+  return {.what = "unknown field '" + std::string(name) + "'",
+          .where = where,
+          .advice = base::name_advice(name, names)};
 }
 
 }  // namespace elrom::field

@@ -12,7 +12,6 @@ namespace elrom::field {
 
 namespace {
 
-
 std::size_t size_attribute(const io::Hdf5Group& group, const std::string& name) {
   const double value = group.number(name);
   constexpr double most = 1e9;

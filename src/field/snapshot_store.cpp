@@ -73,15 +73,8 @@ MatrixD SnapshotStore::inputs(std::span<const std::size_t> cases) const {
 
 MatrixF SnapshotStore::read(std::string_view field, std::span<const std::size_t> cases) const {
   const auto& mesh = impl_->mesh;
-  const auto known = std::any_of(impl_->fields.begin(), impl_->fields.end(),
-                                 [&](const FieldInfo& f) { return f.name == field; });
-  if (!known) {
-    std::vector<std::string> names;
-    for (const auto& f : impl_->fields) names.push_back(f.name);
-    throw InputError({.what = "unknown field '" + std::string(field) + "'",
-                      .where = path().string(),
-                      .advice = base::name_advice(field, names)});
-  }
+  if (std::ranges::find(impl_->fields, field, &FieldInfo::name) == impl_->fields.end())
+    throw InputError(unknown_field(impl_->fields, field, path().string()));
   const auto dataset = impl_->file.dataset("fields/" + std::string(field));
   MatrixF values(static_cast<Eigen::Index>(cases.size()), static_cast<Eigen::Index>(mesh.n_cells()));
   for (std::size_t row = 0; row < cases.size(); ++row) {

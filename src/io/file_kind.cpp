@@ -28,18 +28,20 @@ std::optional<FormatVersion> version_of(std::string_view text) {
 FormatVersion check_kind(const FoundKind& found, const FileKind& expected, const std::string& where) {
   const std::string name(expected.name);
   if (found.kind != name) {
-    throw InputError(
-        {.what = "wrong kind of file", .where = where, .found = found.kind.value_or("no kind"), .expected = name});
+    throw InputError({.what = "wrong kind of file",
+                      .where = where,
+                      .found = found.kind.value_or("no kind"),
+                      .expected = name});
   }
   const auto version = found.format ? version_of(*found.format) : std::nullopt;
   if (version && version->major == expected.version.major) return *version;
-  throw InputError(
-      {.what = version ? "another format version" : "damaged format version",
-       .where = where,
-       .found = name + " " + found.format.value_or("without a version"),
-       .expected = name + " " + std::to_string(expected.version.major) + ".x",
-       .advice = "use the ELROM that wrote it" + (found.program ? " (" + *found.program + ")" : "") + ", or " +
-                 std::string(expected.remedy)});
+  throw InputError({.what = version ? "another format version" : "damaged format version",
+                    .where = where,
+                    .found = name + " " + found.format.value_or("without a version"),
+                    .expected = name + " " + std::to_string(expected.version.major) + ".x",
+                    .advice = "use the ELROM that wrote it" +
+                              (found.program ? " (" + *found.program + ")" : "") + ", or " +
+                              std::string(expected.remedy)});
 }
 
 }  // namespace elrom::io

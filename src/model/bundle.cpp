@@ -8,7 +8,6 @@
 #include "bundle_info.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
-#include "elrom/base/text.hpp"
 
 namespace elrom::model {
 BundleReader::BundleReader(const std::filesystem::path& path, io::Verify verify)
@@ -81,13 +80,7 @@ Guard BundleReader::guard() const { return Guard::load(file_, "guard", info_.sch
 
 std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, const Wanted& wanted) const {
   const auto prefix = field_prefix(field);
-  if (!file_.has_text(prefix)) {
-    std::vector<std::string> names;
-    for (const auto& known : info_.fields) names.push_back(known.name);
-    throw InputError({.what = "no field '" + field + "'",
-                      .where = file_.where(),
-                      .advice = base::name_advice(field, names)});
-  }
+  if (!file_.has_text(prefix)) throw InputError(field::unknown_field(info_.fields, field, file_.where()));
   auto model = load_field_model(file_, prefix, wanted);
   const auto in_words = [](std::size_t inputs, std::size_t planes, std::size_t columns) {
     return std::to_string(inputs) + " inputs, " + std::to_string(planes) + " planes, " +

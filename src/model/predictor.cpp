@@ -9,7 +9,6 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
-#include "elrom/base/text.hpp"
 
 namespace elrom::model {
 namespace {
@@ -18,21 +17,13 @@ namespace {
 /// models' kernels work on whole vectors of planes.
 constexpr std::size_t plane_grain = 16;
 
-std::vector<field::FieldInfo> chosen_fields(const BundleReader& bundle,
-                                            const std::vector<std::string>& wanted) {
-  const auto& all = bundle.info().fields;
-  if (wanted.empty()) return all;
-  std::vector<std::string> names;
-  for (const auto& info : all) names.push_back(info.name);
-  for (const auto& name : wanted) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw UsageError({.what = "unknown field '" + name + "'", .advice = base::name_advice(name, names)});
-  }
-  std::vector<field::FieldInfo> chosen;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const field::FieldInfo& info) {
-    return std::find(wanted.begin(), wanted.end(), info.name) != wanted.end();
+/// In the bundle's order, whatever that of the names.
+std::vector<field::FieldInfo> in_order(std::vector<field::FieldInfo> all,
+                                       const std::vector<field::FieldInfo>& chosen) {
+  std::erase_if(all, [&](const field::FieldInfo& info) {
+    return std::ranges::find(chosen, info.name, &field::FieldInfo::name) == chosen.end();
   });
-  return chosen;
+  return all;
 }
 
 std::vector<std::int32_t> chosen_planes(std::size_t n_planes, std::vector<std::int32_t> wanted) {
@@ -124,7 +115,7 @@ struct Predictor::Impl {
 Predictor::Impl::Impl(BundleReader reader, Selection wanted)
     : bundle(std::move(reader)),
       selection(std::move(wanted)),
-      fields(chosen_fields(bundle, selection.fields)),
+      fields(in_order(bundle.info().fields, field::choose_fields(bundle.info().fields, selection.fields))),
       planes(chosen_planes(bundle.n_planes(), selection.planes)),
       models(fields.size()),
       uncertainty(fields.size()),

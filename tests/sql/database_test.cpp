@@ -5,6 +5,7 @@
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/throws.hpp"
 
@@ -81,13 +82,17 @@ TEST(Database, AFileOfAnotherKindOrVersionIsRefusedAndLeftAsItIs) {
     std::string content, message;
   };
   const std::string about = "CREATE TABLE about (key TEXT PRIMARY KEY, value); INSERT INTO about VALUES ";
-  for (const auto& [content, message] :
-       {Case{"CREATE TABLE songs (name TEXT)", "found no kind, expected elrom-test"},
-        Case{about + "('kind', 'elrom-trials'), ('format_major', 2)", "found elrom-trials, expected elrom-test"},
-        Case{about + "('kind', 'elrom-test'), ('format_major', 3), ('format_minor', 0), ('program', 'ELROM 9')",
-             "found elrom-test 3.0, expected elrom-test 2.x; use the ELROM that wrote it (ELROM 9), or make it anew"},
-        Case{about + "('kind', 'elrom-test'), ('format_major', 1), ('format_minor', 4)", "found elrom-test 1.4"},
-        Case{about + "('kind', 'elrom-test')", "found elrom-test without a version"}}) {
+  for (
+      const auto& [content, message] :
+      {Case{"CREATE TABLE songs (name TEXT)", "found no kind, expected elrom-test"},
+       Case{about + "('kind', 'elrom-trials'), ('format_major', 2)",
+            "found elrom-trials, expected elrom-test"},
+       Case{
+           about + "('kind', 'elrom-test'), ('format_major', 3), ('format_minor', 0), ('program', 'ELROM 9')",
+           "found elrom-test 3.0, expected elrom-test 2.x; use the ELROM that wrote it (ELROM 9), or make it anew"},
+       Case{about + "('kind', 'elrom-test'), ('format_major', 1), ('format_minor', 4)",
+            "found elrom-test 1.4"},
+       Case{about + "('kind', 'elrom-test')", "found elrom-test without a version"}}) {
     std::filesystem::remove(path);
     execute(path, content);
     const auto before = base::sha256_file(path);

@@ -85,9 +85,7 @@ networks::RecordOptions NetworksMethod::record_options(const std::string& field)
               transform == settings_.networks.transform.end() ? "none" : transform->second),
           .scale_cells = settings_.networks.targets == "cell",
           .mirrors = settings_.networks.mirrors && settings_.symmetry.enabled,
-          .relevance = settings_.networks.relevance == "linear" ? networks::Relevance::linear
-                       : settings_.networks.relevance == "gp"   ? networks::Relevance::gp
-                                                                : networks::Relevance::none};
+          .relevance = networks::relevance_kind_of(settings_.networks.relevance)};
 }
 
 void NetworksMethod::keep_plan(const std::string& field, NetworkPlan plan) { kept_[field] = std::move(plan); }

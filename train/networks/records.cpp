@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elrom/base/digest.hpp"
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/math/gaussian_process.hpp"
 #include "elrom/math/ridge.hpp"
@@ -247,6 +248,12 @@ TrainingProblem make_problem(const ScreeningData& records, const Band& band) {
   fill(records, band, Part::validation, problem.validation_inputs, problem.validation_targets,
        problem.validation_weights);
   return problem;
+}
+
+Relevance relevance_kind_of(std::string_view name) {
+  constexpr base::EnumNames<Relevance, 3> names{
+      "relevance", {{Relevance::none, "none"}, {Relevance::linear, "linear"}, {Relevance::gp, "gp"}}};
+  return names.value(name);
 }
 
 std::vector<double> relevance_of(Relevance kind, const MatrixD& inputs, const MatrixF& values) {

@@ -120,16 +120,16 @@ Json method_node(const MethodSummary& method) {
 std::string to_json(const AccuracyReport& report) {
   auto root = io::json_head<Json>(io::kinds::accuracy);
   root.update({{"created", report.created},
-            {"study", report.study.name},
-            {"headline", headline(report)},
-            {"training_cases", report.n_training},
-            {"planes", report.n_planes},
-            {"columns", report.n_columns},
-            {"mean_nrmse", number(report.methods.front().mean_nrmse)},
-            {"gain_over_best_single_peer", number(report.gain())},
-            {"gain_without_noise", number(report.gain_without_noise())},
-            {"fields_at_or_below_every_simple_peer", report.fields_won()},
-            {"repeated_runs", report.repeats}});
+               {"study", report.study.name},
+               {"headline", headline(report)},
+               {"training_cases", report.n_training},
+               {"planes", report.n_planes},
+               {"columns", report.n_columns},
+               {"mean_nrmse", number(report.methods.front().mean_nrmse)},
+               {"gain_over_best_single_peer", number(report.gain())},
+               {"gain_without_noise", number(report.gain_without_noise())},
+               {"fields_at_or_below_every_simple_peer", report.fields_won()},
+               {"repeated_runs", report.repeats}});
   if (const auto best = report.best_peer()) root["best_single_peer"] = report.methods[*best].file.name;
   for (std::size_t k = 0; k < coverage_levels.size(); ++k)
     root["coverage"].push_back(

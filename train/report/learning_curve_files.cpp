@@ -35,12 +35,12 @@ LearningPoint to_point(const Json& node) {
 std::string to_json(const LearningCurve& curve) {
   auto root = io::json_head<Json>(io::kinds::learning_curve);
   root.update({{"study", curve.study},
-            {"method", curve.method},
-            {"points", Json::array()},
-            {"fit", {{"floor", curve.fit.floor}, {"scale", curve.fit.scale}, {"rate", curve.fit.rate}}},
-            {"gain_next_20", curve.gain_next_20},
-            {"v1", to_node(curve.v1)},
-            {"v2", to_node(curve.v2)}});
+               {"method", curve.method},
+               {"points", Json::array()},
+               {"fit", {{"floor", curve.fit.floor}, {"scale", curve.fit.scale}, {"rate", curve.fit.rate}}},
+               {"gain_next_20", curve.gain_next_20},
+               {"v1", to_node(curve.v1)},
+               {"v2", to_node(curve.v2)}});
   for (const auto& point : curve.points) root["points"].push_back(to_node(point));
   return root.dump(1) + '\n';
 }

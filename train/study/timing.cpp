@@ -40,7 +40,6 @@ std::map<std::string, double> seconds_of(const Json& root, const char* part) {
   return seconds;
 }
 
-
 }  // namespace
 
 std::optional<Timing> read_timing(const std::filesystem::path& path) {
@@ -83,9 +82,8 @@ void write_timing(const std::filesystem::path& path,
                {"stages", stages}});
   for (const auto& [method, seconds] : methods)
     if (std::isfinite(seconds)) json["methods"][method] = seconds;
-  json["from_nothing"] = reused == 0
-                             ? Json{{"total_seconds", total_seconds}, {"stages", stages}}
-                             : earlier_full_run(path);
+  json["from_nothing"] =
+      reused == 0 ? Json{{"total_seconds", total_seconds}, {"stages", stages}} : earlier_full_run(path);
   base::write_text(path, json.dump(1) + "\n");
 }
 

@@ -12,7 +12,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-
 void add(base::Sha256& sha, const MatrixF& matrix) {
   sha.add_value<std::int64_t>(matrix.rows()).add_value<std::int64_t>(matrix.cols());
   sha.add(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size()))));

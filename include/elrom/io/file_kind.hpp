@@ -23,7 +23,8 @@ struct FileKind {
 
 namespace kinds {
 inline constexpr FileKind mesh{"elrom-mesh", {1, 0}, "make it again with elrom-data mesh"};
-inline constexpr FileKind snapshots{"elrom-snapshots", {1, 0}, "import the cases again with elrom-data import"};
+inline constexpr FileKind snapshots{
+    "elrom-snapshots", {1, 0}, "import the cases again with elrom-data import"};
 inline constexpr FileKind bundle{"elrom-bundle", {1, 0}, "train again with elrom-train run"};
 inline constexpr FileKind prediction{"elrom-prediction", {1, 1}, "predict again with elrom-predict"};
 inline constexpr FileKind manifest{"elrom-manifest", {1, 0}, "fetch the shipped cases again"};
@@ -35,11 +36,13 @@ inline constexpr FileKind stage{"elrom-stage", {1, 0}, "remove it"};
 inline constexpr FileKind checkpoint{"elrom-checkpoint", {1, 0}, "remove it"};
 inline constexpr FileKind retrain{"elrom-retrain", {1, 0}, "retrain again with elrom-train retrain"};
 inline constexpr FileKind accuracy{"elrom-accuracy", {1, 0}, "report again with elrom-report accuracy"};
-inline constexpr FileKind learning_curve{"elrom-learning-curve", {1, 0}, "draw it again with elrom-report learning-curve"};
+inline constexpr FileKind learning_curve{
+    "elrom-learning-curve", {1, 0}, "draw it again with elrom-report learning-curve"};
 inline constexpr FileKind cost{"elrom-cost", {1, 0}, "report again with elrom-report cost"};
 
-inline constexpr std::array all{mesh,  snapshots,  bundle,  prediction, manifest,       check, split, timing, trials,
-                                stage, checkpoint, retrain, accuracy,   learning_curve, cost};
+inline constexpr std::array all{mesh,       snapshots, bundle,   prediction,     manifest,
+                                check,      split,     timing,   trials,         stage,
+                                checkpoint, retrain,   accuracy, learning_curve, cost};
 }  // namespace kinds
 
 /// What a file says of itself; nothing where it says nothing.
@@ -68,7 +71,9 @@ FormatVersion check_json_kind(const Json& root, const FileKind& expected, const 
 /// The keys that every JSON document of ours begins with.
 template <class Json>
 [[nodiscard]] Json json_head(const FileKind& kind) {
-  return {{"kind", kind.name}, {"format", {kind.version.major, kind.version.minor}}, {"program", program_version()}};
+  return {{"kind", kind.name},
+          {"format", {kind.version.major, kind.version.minor}},
+          {"program", program_version()}};
 }
 
 }  // namespace elrom::io

@@ -13,6 +13,8 @@ namespace elrom::networks {
 /// What scales the inputs beside their standard deviation: nothing, the weights of a ridge fit, or the
 /// inverse length scales of a Gaussian process (ARD).
 enum class Relevance { none, linear, gp };
+/// @throws InputError for an unknown name
+[[nodiscard]] Relevance relevance_kind_of(std::string_view name);
 
 struct RecordOptions {
   model::PlaneEncodingKind encoding = model::PlaneEncodingKind::index;
