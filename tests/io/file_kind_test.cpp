@@ -9,6 +9,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/io/hdf5.hpp"
+#include "elrom/io/stage_cache.hpp"
 #include "elrom/io/tensor_file.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -145,6 +146,58 @@ TEST(FileKind, NamesAreUniqueAndDocumented) {
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
     EXPECT_THAT(formats, HasSubstr(kind.name));
   }
+}
+
+// A kind that is spelled out is one that was written or read past the table and its check.
+TEST(FileKind, KindsAreSpelledOutInTheTableAlone) {
+  const std::filesystem::path root(ELROM_SOURCE_DIR);
+  for (const auto* folder : {"include", "src", "data", "train", "predict"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+      const auto extension = entry.path().extension();
+      if ((extension != ".cpp" && extension != ".hpp") || entry.path().filename() == "file_kind.hpp")
+        continue;
+      std::ifstream file(entry.path());
+      for (std::string line; std::getline(file, line);) {
+        if (line.find("hash.add(std::string_view(\"elrom-mesh\"))") != std::string::npos)
+          continue;  // begins a digest
+        line.resize(std::min(line.size(), line.find("//")));
+        for (const auto& kind : kinds::all)
+          EXPECT_EQ(line.find('"' + std::string(kind.name) + '"'), std::string::npos)
+              << entry.path() << ": " << line;
+      }
+    }
+}
+
+TEST(StageCache, AKeptResultOfANewerMinorVersionIsTakenAndOfANewerMajorOneMadeAgain) {
+  const test::TemporaryFolder folder;
+  const StageCache cache(folder.path());
+  int made = 0;
+  const auto get = [&] {
+    return cache.get("build", "x", std::string(64, 'a'), [&] {
+      ++made;
+      TensorFile file;
+      file.set_text("answer", "42");
+      return file;
+    });
+  };
+  static_cast<void>(get());
+  const auto path = cache.path("build", "x", std::string(64, 'a'), ".elrom");
+  const auto mark = [&](const FileKind& as) {
+    TensorFile copy;
+    for (const auto& [key, text] : TensorFile::open(path).texts()) copy.set_text(key, text);
+    write_kind(copy, as);
+    copy.write(path);
+  };
+
+  mark({kinds::stage.name, {1, 5}, ""});
+  EXPECT_EQ(get().text("answer"), "42");
+  EXPECT_EQ(made, 1);
+  mark({kinds::stage.name, {2, 0}, ""});
+  EXPECT_EQ(get().text("answer"), "42");
+  EXPECT_EQ(made, 2);
+  mark(kinds::bundle);
+  static_cast<void>(get());
+  EXPECT_EQ(made, 3);
 }
 
 }  // namespace

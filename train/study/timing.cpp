@@ -42,14 +42,14 @@ std::map<std::string, double> seconds_of(const Json& root, const char* part) {
 
 }  // namespace
 
-std::optional<Timing> read_timing(const std::filesystem::path& path) {
+std::optional<StudyTiming> read_timing(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   const auto json = parse_timing(path);
   try {
-    Timing timing{.total_seconds = json.value("total_seconds", 0.0),
-                  .peak_rss_gib = json.value("peak_rss_gib", 0.0),
-                  .stages = seconds_of(json, "stages"),
-                  .methods = seconds_of(json, "methods")};
+    StudyTiming timing{.total_seconds = json.value("total_seconds", 0.0),
+                       .peak_rss_gib = json.value("peak_rss_gib", 0.0),
+                       .stages = seconds_of(json, "stages"),
+                       .methods = seconds_of(json, "methods")};
     if (const auto full = json.value("from_nothing", Json()); full.is_object()) {
       timing.full_seconds = full.value("total_seconds", 0.0);
       timing.full_stages = seconds_of(full, "stages");

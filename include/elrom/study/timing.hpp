@@ -8,7 +8,7 @@
 
 namespace elrom::study {
 
-struct Timing {
+struct StudyTiming {
   double total_seconds = 0;
   double peak_rss_gib = 0;
   std::map<std::string, double> stages;   ///< summed over results that may have run side by side
@@ -19,6 +19,6 @@ struct Timing {
 
 /// @return nothing where there is no such file
 /// @throws InputError for another kind or version of file, or a damaged one
-[[nodiscard]] std::optional<Timing> read_timing(const std::filesystem::path& path);
+[[nodiscard]] std::optional<StudyTiming> read_timing(const std::filesystem::path& path);
 
 }  // namespace elrom::study
