@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
+#include "elrom/base/comma_list.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/ingest/import_checked.hpp"
@@ -53,10 +54,9 @@ void add_import(CLI::App& program, Work& chosen) {
       ->add_option("--cases", options->cases,
                    "Table of boundary conditions, for formats that carry none; cases are found by name")
       ->type_name("CASES.csv");
-  command
-      ->add_option("--fields", options->fields,
-                   "Fields of a new store, separated by commas [default: the nine standard fields]")
-      ->delimiter(',')
+  base::comma_list(
+      command->add_option("--fields", options->fields,
+                          "Fields of a new store, separated by commas [default: the nine standard fields]"))
       ->type_name("NAME,...");
   command->add_option("--threads", options->n_threads, "Processor threads")
       ->capture_default_str()

@@ -1,9 +1,9 @@
-// Predicts one case and prints the plane averages of a field: bundle, cases file, case, field.
+// Predicts one case and prints the plane averages of a field: bundle, cases file, case, field [, file to write].
 #include <cstdio>
 
 #include "elrom/base/app.hpp"
 #include "elrom/base/error.hpp"
-#include "elrom/model/predictor.hpp"
+#include "elrom/model/prediction_file.hpp"
 
 namespace {
 
@@ -20,7 +20,7 @@ void print_profile(const elrom::model::Predictor& predictor, const std::vector<f
 }
 
 int predict(int argc, char** argv) {
-  if (argc != 5) throw elrom::UsageError("arguments are: BUNDLE CASES CASE FIELD");
+  if (argc != 5 && argc != 6) throw elrom::UsageError("arguments are: BUNDLE CASES CASE FIELD [FILE.hdf]");
   const elrom::model::Predictor predictor(argv[1], {.fields = {argv[4]}});
   for (const auto& inputs : elrom::field::read_cases(argv[2], predictor.bundle().info().schema)) {
     if (inputs.name != argv[3]) continue;
@@ -30,6 +30,11 @@ int predict(int argc, char** argv) {
     elrom::model::Predictor::Scratch scratch;  // keep it: the next call then allocates nothing
     predictor.predict(inputs.values, values, {}, scratch);
     print_profile(predictor, values);
+    if (argc == 6) {
+      const elrom::model::PredictionFrame frame(predictor, elrom::model::Extent(predictor.bundle()));
+      elrom::model::write_prediction(
+          frame, {.inputs = &inputs, .assessment = &assessment, .values = values, .half_width = {}}, argv[5]);
+    }
     return 0;
   }
   throw elrom::UsageError(std::string("no such case: ") + argv[3]);

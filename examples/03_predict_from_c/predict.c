@@ -1,5 +1,6 @@
-/* Predicts one case and prints the plane averages of a field: bundle, cases file, case, field. */
+/* Predicts one case and prints the plane averages of a field: bundle, cases file, case, field [, file to write]. */
 #include <elrom/model/elrom.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -21,7 +22,7 @@ static void print_profile(const elrom_predictor* predictor, const double* xyz, c
   }
 }
 
-static int predict(const elrom_predictor* predictor, const char* cases, const char* name) {
+static int predict(const elrom_predictor* predictor, const char* cases, const char* name, const char* file) {
   const size_t n_cells = elrom_n_planes(predictor) * elrom_n_columns(predictor);
   double* inputs = malloc(elrom_n_inputs(predictor) * sizeof *inputs);
   double* xyz = malloc(n_cells * 3 * sizeof *xyz);
@@ -37,6 +38,7 @@ static int predict(const elrom_predictor* predictor, const char* cases, const ch
   if (status == 0) {
     printf("%s: %s\n", name, reason);
     print_profile(predictor, xyz, values);
+    if (file != NULL) status = elrom_write_prediction(predictor, inputs, name, NAN, file, 1);
   }
   free(inputs);
   free(xyz);
@@ -45,13 +47,13 @@ static int predict(const elrom_predictor* predictor, const char* cases, const ch
 }
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    fprintf(stderr, "predict: arguments are: BUNDLE CASES CASE FIELD\n");
+  if (argc != 5 && argc != 6) {
+    fprintf(stderr, "predict: arguments are: BUNDLE CASES CASE FIELD [FILE.hdf]\n");
     return 2;
   }
   elrom_predictor* predictor = elrom_open(argv[1], argv[4]);
   if (predictor == NULL) return failed();
-  const int status = predict(predictor, argv[2], argv[3]);
+  const int status = predict(predictor, argv[2], argv[3], argc == 6 ? argv[5] : NULL);
   elrom_close(predictor);
   return status == 0 ? 0 : failed();
 }

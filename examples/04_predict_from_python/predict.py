@@ -1,24 +1,29 @@
-"""Predicts one case and prints the plane averages of a field: library, bundle, cases file, case, field."""
+"""Predicts one case and prints the plane averages of a field: bundle, cases file, case, field [, file to write]."""
 import sys
 
-from elrom import ElromError, Predictor
+import elrom
 
 
-def main(library, bundle, cases, case, field):
-    with Predictor(bundle, [field], library) as predictor:
-        inputs = predictor.read_case(cases, case)
-        print(f"{case}: {predictor.validity(inputs)[1]}")
-        averages = predictor.predict(inputs)[0].mean(axis=1, dtype=float)
-        heights = predictor.centres()[:, :, 2].mean(axis=1)
-        print(f"{'z [m]':>10}  mean {field} [{predictor.units[0]}]")
-        for height, average in zip(heights, averages):
-            print(f"{height:10.2f}  {average:.6g}")
+def main(bundle, cases, name, field, *target):
+    predictor = elrom.Predictor(bundle, [field])
+    table = predictor.read_cases(cases)
+    if name not in table:
+        raise elrom.UsageError(f"no such case: {name}")
+    prediction = predictor.predict(table[name])
+    print(f"{name}: {prediction.assessment.reason}")
+    heights = predictor.coordinates[:, :, 2].mean(axis=1, dtype=float)
+    print(f"{'z [m]':>10}  mean {field} [{prediction.fields[0].unit}]")
+    for height, average in zip(heights, prediction[field].mean(axis=1, dtype=float)):
+        print(f"{height:10.2f}  {average:.6g}")
+    for path in target:
+        prediction.write(path)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 6:
-        sys.exit("predict: arguments are: LIBRARY BUNDLE CASES CASE FIELD")
+    if len(sys.argv) not in (5, 6):
+        sys.exit("predict: arguments are: BUNDLE CASES CASE FIELD [FILE.hdf]")
     try:
         main(*sys.argv[1:])
-    except ElromError as error:
-        sys.exit(f"predict: {error}")
+    except elrom.Error as error:
+        print(f"predict: {error}", file=sys.stderr)
+        sys.exit(error.status)

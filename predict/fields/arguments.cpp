@@ -3,84 +3,76 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "elrom/base/comma_list.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/version.hpp"
+#include "elrom/fields/ranges.hpp"
 
 namespace elrom::fields {
 namespace {
 
-constexpr const char* description =
-    "Predicts the fields of a furnace from its boundary conditions, with a bundle that elrom-train wrote.\n"
-    "\n"
-    "  elrom-predict --bundle model.elrom --cases cases.csv --output results\n"
-    "  elrom-predict --bundle model.elrom --cases cases.csv --case load_064 --set 'primary_air=180 kg/s' "
-    "--output results\n"
-    "  elrom-predict --bundle model.elrom --cases cases.csv --case load_064 --fields pressure --format csv "
-    "--output -\n";
+constexpr const char* description = R"(
+Predicts the fields of a furnace from its boundary conditions, with a bundle that elrom-train wrote.
 
-constexpr const char* footer =
-    "Cases: a CSV table with the columns case, load (may be missing) and 'name [unit]' for every input, in "
-    "any order; or\n"
-    "JSON or TOML with the same names. Units are converted. --set changes an input of every case chosen; "
-    "without --cases it\n"
-    "must give all of them.\n"
-    "\n"
-    "Validity: every case is judged inside, edge or outside of what the bundle was trained on; the verdict "
-    "and its reason\n"
-    "are printed and kept in the output. Inputs beyond one trained width outside the range are held there. "
-    "With --strict a\n"
-    "case that is outside is not written, the other cases are, and the exit status is 4.\n"
-    "\n"
-    "Physics: --audit compares what is written with the boundary conditions: solids in the fields against "
-    "the "
-    "inventory, gas\n"
-    "flow of every plane against the inlets' (mean and worst plane), net solid flow, pressure drop against "
-    "the "
-    "weight of the\n"
-    "solids, bounds. Numbers of every plane are in the .hdf file (/elrom/audit). --conserve brings the "
-    "solids "
-    "to the\n"
-    "inventory (input solids_inventory) and the gas flow of the planes between inlets and outlet to the "
-    "inlets', by the\n"
-    "smallest change of volume fraction (in proportion to it) and of gas velocity z, and says how large it "
-    "was; half-widths\n"
-    "stay as they are. EL3D's own averages do not conserve exactly: repaired fields are for users who need "
-    "the "
-    "balance, not\n"
-    "nearer to EL3D. Both need all planes and no region; of --fields, solid_volume_fraction and "
-    "gas_velocity_z, and for\n"
-    "--audit pressure and solid_velocity_z too.\n"
-    "\n"
-    "Output: <folder>/<case>.hdf (HDF5: /elrom for scripts, /VTKHDF for ParaView 5.11 and later), .csv, .txt "
-    "(columns for\n"
-    "SFW3D) or .ip (Fluent interpolation file). Values are in SI. A file appears whole or not at all.\n"
-    "\n"
-    "Exit status: 0 done, 2 wrong command line, 3 wrong file or input, 4 outside the trained range "
-    "(--strict), 5 arithmetic.";
+  elrom-predict --bundle model.elrom --cases cases.csv --output results
+  elrom-predict --bundle model.elrom --cases cases.csv --case load_064 --set 'primary_air=180 kg/s' --output results
+  elrom-predict --bundle model.elrom --cases cases.csv --case load_064 --fields pressure --format csv --output -
+)";
+
+constexpr const char* footer = R"(
+Cases: a CSV table with the columns case, load (may be missing) and 'name [unit]' for every input, in any order; or
+JSON or TOML with the same names. Units are converted. --set changes an input of every case chosen; without --cases it
+must give all of them.
+
+Validity: every case is judged inside, edge or outside of what the bundle was trained on; the verdict and its reason
+are printed and kept in the output. Inputs beyond one trained width outside the range are held there. With --strict a
+case that is outside is not written, the other cases are, and the exit status is 4.
+
+Physics: --audit compares what is written with the boundary conditions: solids in the fields against the inventory, gas
+flow of every plane against the inlets' (mean and worst plane), net solid flow, pressure drop against the weight of the
+solids, bounds. Numbers of every plane are in the .hdf file (/elrom/audit). --conserve brings the solids to the
+inventory (input solids_inventory) and the gas flow of the planes between inlets and outlet to the inlets', by the
+smallest change of volume fraction (in proportion to it) and of gas velocity z, and says how large it was; half-widths
+stay as they are. EL3D's own averages do not conserve exactly: repaired fields are for users who need the balance, not
+nearer to EL3D. Both need all planes and no region; of --fields, solid_volume_fraction and gas_velocity_z, and for
+--audit pressure and solid_velocity_z too.
+
+Output: <folder>/<case>.hdf (HDF5: /elrom for scripts, /VTKHDF for ParaView 5.11 and later), .csv, .txt (columns for
+SFW3D) or .ip (Fluent interpolation file). Values are in SI. A file appears whole or not at all.
+
+Exit status: 0 done, 2 wrong command line, 3 wrong file or input, 4 outside the trained range (--strict), 5 arithmetic.
+)";
+
+/// The text between a raw string's first and last line break, so that it can begin on a line of its own.
+std::string lines_of(std::string_view raw) { return std::string(raw.substr(1, raw.size() - 2)); }
 
 const std::map<std::string, Format> format_names{
     {"hdf", Format::hdf}, {"csv", Format::csv}, {"txt", Format::txt}, {"ip", Format::ip}};
 
+/// What is read as text, and understood when all of the command line is there.
+struct Texts {
+  std::string planes, region, builds = "mean";
+};
+
 void add_input_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--bundle", arguments.bundle, "bundle to predict with")->required();
   app.add_option("--cases", arguments.cases, "table of cases: .csv, .json or .toml");
-  app.add_option("--case", arguments.case_patterns,
-                 "only the cases of these names ('load_*' works), default: all")
-      ->delimiter(',');
-  app.add_option("--set", arguments.settings,
-                 "name=value or 'name=value unit': an input's value; may be repeated")
-      ->take_all();
+  base::comma_list(app.add_option("--case", arguments.case_patterns,
+                                  "only the cases of these names ('load_*' works), default: all"));
+  base::repeatable(app.add_option("--set", arguments.settings,
+                                  "name=value or 'name=value unit': an input's value; may be repeated"));
   app.add_option("--name", arguments.name, "name of the case that --set alone makes")->capture_default_str();
 }
 
-void add_selection_options(CLI::App& app, Arguments& arguments, std::string& builds) {
-  app.add_option("--fields", arguments.fields, "only these fields (a,b,c), default: all")->delimiter(',');
-  app.add_option("--planes", arguments.planes, "only these planes: 7, 0:10 (without 10) or 0:10,20,30:")
+void add_selection_options(CLI::App& app, Arguments& arguments, Texts& texts) {
+  base::comma_list(app.add_option("--fields", arguments.fields, "only these fields (a,b,c), default: all"));
+  app.add_option("--planes", texts.planes, "only these planes: 7, 0:10 (without 10) or 0:10,20,30:")
       ->type_name("RANGES");
-  app.add_option("--region", arguments.region,
+  app.add_option("--region", texts.region,
                  "only cells with centres in x0:x1,y0:y1,z0:z1 [m]; a side may be empty (:,:,0:5)")
       ->type_name("BOX");
-  app.add_option("--builds", builds, "mean: combine builds as trained; best: the best build alone, faster")
+  app.add_option("--builds", texts.builds,
+                 "mean: combine builds as trained; best: the best build alone, faster")
       ->check(CLI::IsMember({"mean", "best"}))
       ->capture_default_str();
   app.add_option("--uncertainty", arguments.level,
@@ -93,9 +85,9 @@ void add_output_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--output", arguments.output,
                  "folder to write to (made when missing), or - for standard output")
       ->capture_default_str();
-  app.add_option("--format", arguments.formats,
-                 "hdf, csv, txt, ip; several with commas; default: hdf, with --output -: csv")
-      ->delimiter(',')
+  base::comma_list(
+      app.add_option("--format", arguments.formats,
+                     "hdf, csv, txt, ip; several with commas; default: hdf, with --output -: csv"))
       ->transform(CLI::CheckedTransformer(format_names).description(""))
       ->type_name("FORMAT");
   app.add_flag("--strict", arguments.strict,
@@ -115,11 +107,9 @@ void add_run_options(CLI::App& app, Arguments& arguments, bool& no_verify, bool&
       ->capture_default_str();
   app.add_flag("--no-verify", no_verify, "do not compare the bundle's digests (saves a few milliseconds)");
   app.add_flag("--no-sync", no_sync,
-               "do not wait until the files are on the disk (saves some milliseconds a file; they may be "
-               "lost with the power)");
-  app.add_flag(
-      "--timing", arguments.timing,
-      "print where the time went; one step after the other, so that the whole takes a little longer");
+               "do not wait until files are on the disk (saves some ms a file; a power cut may lose them)");
+  app.add_flag("--timing", arguments.timing,
+               "print where the time went; one step after the other, so the whole takes a little longer");
 }
 
 void check_together(Arguments& arguments) {
@@ -149,14 +139,14 @@ void check_together(Arguments& arguments) {
 
 ParsedArguments parse_arguments(int argc, const char* const* argv) {
   Arguments arguments;
-  std::string builds = "mean";
+  Texts texts;
   bool no_verify = false, no_sync = false;
-  CLI::App app(description, "elrom-predict");
+  CLI::App app(lines_of(description) + "\n", "elrom-predict");
   app.set_version_flag("--version", program_version());
-  app.footer(footer);
+  app.footer(lines_of(footer));
   app.get_formatter()->column_width(24);
   add_input_options(app, arguments);
-  add_selection_options(app, arguments, builds);
+  add_selection_options(app, arguments, texts);
   add_output_options(app, arguments);
   add_physics_options(app, arguments);
   add_run_options(app, arguments, no_verify, no_sync);
@@ -167,7 +157,9 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(std::string(error.what()) + "; --help lists the options");
   }
-  arguments.best_build_only = builds == "best";
+  if (!texts.planes.empty()) arguments.planes = parse_planes(texts.planes);
+  if (!texts.region.empty()) arguments.region = parse_box(texts.region);
+  arguments.best_build_only = texts.builds == "best";
   arguments.verify = !no_verify;
   arguments.sync = !no_sync;
   check_together(arguments);

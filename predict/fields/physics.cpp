@@ -1,4 +1,4 @@
-#include "physics.hpp"
+#include "elrom/fields/physics.hpp"
 
 #include <algorithm>
 
@@ -18,7 +18,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void check_cells(const Arguments& arguments, const model::BundleReader& bundle, const Cells& cells) {
+void check_cells(const Arguments& arguments, const model::BundleReader& bundle, const model::Cells& cells) {
   if (cells.size() == bundle.n_planes() * bundle.n_columns()) return;
   throw UsageError({.what = option_of(arguments) + " needs all cells",
                     .found = std::to_string(cells.size()) + " of " +
@@ -73,7 +73,7 @@ std::string PhysicsResult::text() const {
   return text;
 }
 
-Physics::Physics(const Arguments& arguments, const model::BundleReader& bundle, const Cells& cells)
+Physics::Physics(const Arguments& arguments, const model::BundleReader& bundle, const model::Cells& cells)
     : audit_(arguments.audit), conserve_(arguments.conserve) {
   check_cells(arguments, bundle, cells);
   check_fields(arguments, bundle);

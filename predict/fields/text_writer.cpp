@@ -1,9 +1,10 @@
-#include "text_writer.hpp"
+#include "elrom/fields/text_writer.hpp"
 
 #include <array>
 #include <charconv>
 #include <map>
 
+#include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 
@@ -39,22 +40,20 @@ struct Column {
   std::size_t stride;
 };
 
-std::vector<Column> columns_of(const Run& run, const Prediction& prediction) {
+std::vector<Column> columns_of(const model::PredictionFrame& frame, const Coordinates& coordinates,
+                               const model::Prediction& prediction) {
   std::vector<Column> columns;
-  if (run.average) {
-    columns.push_back({"z", "m", run.average->heights().data(), 1});
-  } else {
-    const char* axes[] = {"x", "y", "z"};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      columns.push_back({axes[axis], "m", run.geometry.centre.data() + axis, 3});
+  const std::size_t n_axes = coordinates.axes.size();
+  check(coordinates.values.size() == n_axes * frame.n_values(), "text export: coordinates of every value");
+  for (std::size_t axis = 0; axis < n_axes; ++axis)
+    columns.push_back({coordinates.axes[axis], "m", coordinates.values.data() + axis, n_axes});
+  for (std::size_t i = 0; i < frame.fields.size(); ++i) {
+    columns.push_back({frame.fields[i].name, frame.fields[i].unit,
+                       prediction.field(prediction.values, frame, i).data(), 1});
   }
-  for (std::size_t i = 0; i < run.fields.size(); ++i) {
-    columns.push_back(
-        {run.fields[i].name, run.fields[i].unit, prediction.field(prediction.values, run, i).data(), 1});
-  }
-  for (std::size_t i = 0; run.level && i < run.fields.size(); ++i) {
-    columns.push_back({run.fields[i].name + "_half_width", run.fields[i].unit,
-                       prediction.field(prediction.half_width, run, i).data(), 1});
+  for (std::size_t i = 0; frame.level && i < frame.fields.size(); ++i) {
+    columns.push_back({frame.fields[i].name + "_half_width", frame.fields[i].unit,
+                       prediction.field(prediction.half_width, frame, i).data(), 1});
   }
   return columns;
 }
@@ -70,13 +69,15 @@ std::string fluent_name(const std::string& name) {
   return known != names.end() ? known->second : name;
 }
 
-void add_comment(const Run& run, const Prediction& prediction, std::string& text) {
+void add_comment(const model::PredictionFrame& frame, const model::Prediction& prediction,
+                 std::string& text) {
   text += "# ELROM prediction for SFW3D, format 1.0\n# program " + program_version() + ", bundle " +
-          run.bundle_digest + "\n";
+          frame.bundle_digest + "\n";
   text += "# case " + prediction.inputs->name + "\n# validity " +
           std::string(model::name_of(prediction.assessment->verdict)) + ": " + prediction.assessment->reason +
           "\n";
-  if (run.level) text += "# half-widths of prediction intervals of level " + base::number(*run.level) + "\n";
+  if (frame.level)
+    text += "# half-widths of prediction intervals of level " + base::number(*frame.level) + "\n";
   if (prediction.change == nullptr) return;
   for (const auto& line : base::split(model::to_text(*prediction.change), '\n'))
     if (!line.empty()) text += "# conserved: " + line + "\n";
@@ -84,19 +85,26 @@ void add_comment(const Run& run, const Prediction& prediction, std::string& text
 
 }  // namespace
 
-void write_csv(const Run& run, const Prediction& prediction, std::string& text) {
-  const auto columns = columns_of(run, prediction);
-  text += run.average ? "plane" : "plane,column";
+Coordinates coordinates_of(const model::PlaneAverage& average) { return {{"z"}, average.heights()}; }
+Coordinates coordinates_of(const model::CellGeometry& geometry) { return {{"x", "y", "z"}, geometry.centre}; }
+Coordinates coordinates_of(const field::Mesh& mesh) {
+  return {{"x", "y", "z"}, {mesh.centre.data(), mesh.centre.data() + mesh.centre.size()}};
+}
+
+void write_csv(const model::PredictionFrame& frame, const Coordinates& coordinates,
+               const model::Prediction& prediction, std::string& text) {
+  const auto columns = columns_of(frame, coordinates, prediction);
+  text += frame.extent.average() ? "plane" : "plane,column";
   for (const auto& column : columns) text += "," + column.name + " [" + column.unit + "]";
   text += '\n';
-  const auto n_columns = static_cast<std::int32_t>(run.cells.n_columns);
-  for (std::size_t row = 0; row < run.n_values(); ++row) {
-    if (run.average) {
-      add_whole(text, run.cells.planes[row]);
+  const auto& cells = frame.extent.cells();
+  for (std::size_t row = 0; row < frame.n_values(); ++row) {
+    if (frame.extent.average()) {
+      add_whole(text, cells.planes()[row]);
     } else {
-      add_whole(text, run.cells.cells[row] / n_columns);
+      add_whole(text, cells.plane(row));
       text += ',';
-      add_whole(text, run.cells.cells[row] % n_columns);
+      add_whole(text, cells.column(row));
     }
     for (const auto& column : columns) {
       text += ',';
@@ -106,36 +114,47 @@ void write_csv(const Run& run, const Prediction& prediction, std::string& text) 
   }
 }
 
-void write_sfw3d(const Run& run, const Prediction& prediction, std::string& text) {
+void write_sfw3d(const model::PredictionFrame& frame, const Coordinates& coordinates,
+                 const model::Prediction& prediction, std::string& text) {
   constexpr int digits = 7;
   constexpr std::size_t width = 16;
-  const auto columns = columns_of(run, prediction);
-  add_comment(run, prediction, text);
-  text += "# " + std::to_string(run.n_values()) + (run.average ? " planes" : " cells") + "; columns:";
+  const auto columns = columns_of(frame, coordinates, prediction);
+  add_comment(frame, prediction, text);
+  text += "# " + std::to_string(frame.n_values()) + (frame.extent.average() ? " planes" : " cells") +
+          "; columns:";
   for (const auto& column : columns) text += " " + column.name + "[" + column.unit + "]";
   text += '\n';
-  for (std::size_t row = 0; row < run.n_values(); ++row) {
+  for (std::size_t row = 0; row < frame.n_values(); ++row) {
     for (const auto& column : columns)
       add_scientific(text, column.values[row * column.stride], digits, width);
     text += '\n';
   }
 }
 
-void write_fluent(const Run& run, const Prediction& prediction, std::string& text) {
+void write_fluent(const model::PredictionFrame& frame, const Coordinates& coordinates,
+                  const model::Prediction& prediction, std::string& text) {
   constexpr int digits = 9;
   constexpr std::size_t n_coordinates = 3;
-  const auto columns = columns_of(run, prediction);
-  text += "3\n3\n" + std::to_string(run.n_values()) + "\n" + std::to_string(columns.size() - n_coordinates) +
-          "\n";
+  const auto columns = columns_of(frame, coordinates, prediction);
+  text += "3\n3\n" + std::to_string(frame.n_values()) + "\n" +
+          std::to_string(columns.size() - n_coordinates) + "\n";
   for (std::size_t i = n_coordinates; i < columns.size(); ++i) text += fluent_name(columns[i].name) + "\n";
   for (const auto& column : columns) {
     text += '(';
-    for (std::size_t row = 0; row < run.n_values(); ++row) {
+    for (std::size_t row = 0; row < frame.n_values(); ++row) {
       add_scientific(text, column.values[row * column.stride], digits, 0);
       text += '\n';
     }
     text += ")\n";
   }
+}
+
+void write_text(Format format, const model::PredictionFrame& frame, const Coordinates& coordinates,
+                const model::Prediction& prediction, std::string& text) {
+  check(format != Format::hdf, "text export: a text format");
+  if (format == Format::csv) write_csv(frame, coordinates, prediction, text);
+  if (format == Format::txt) write_sfw3d(frame, coordinates, prediction, text);
+  if (format == Format::ip) write_fluent(frame, coordinates, prediction, text);
 }
 
 }  // namespace elrom::fields

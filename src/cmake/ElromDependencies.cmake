@@ -34,7 +34,10 @@ if(ELROM_HDF5_ARCHIVE AND ELROM_SZ_ARCHIVE AND ELROM_AEC_ARCHIVE)
   check_cxx_source_compiles("extern \"C\" int H5open(void); int main() { return H5open(); }" ELROM_HDF5_ARCHIVE_LINKS)
   unset(CMAKE_REQUIRED_LIBRARIES)
   if(ELROM_HDF5_ARCHIVE_LINKS)
-    set_target_properties(PkgConfig::HDF5_SERIAL PROPERTIES INTERFACE_LINK_LIBRARIES elrom_hdf5_archive)
+    # Programs take the archive. Shared libraries (elrom-c, Python's module) cannot: it is not position-independent.
+    set(elrom_is_program $<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>)
+    set_target_properties(PkgConfig::HDF5_SERIAL PROPERTIES INTERFACE_LINK_LIBRARIES
+      "$<${elrom_is_program}:elrom_hdf5_archive>;$<$<NOT:${elrom_is_program}>:${HDF5_SERIAL_LINK_LIBRARIES}>")
   endif()
 endif()
 

@@ -91,7 +91,7 @@ endfunction()
 # a test case, <component>/<Suite>.<Case>. The component's internal headers can be included.
 # Slow or statistical work belongs into tests/benchmark, which CTest does not run.
 function(elrom_tests component)
-  cmake_parse_arguments(ARG "LIBTORCH" "TIMEOUT;INTERNAL" "SOURCES;LINKS;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(ARG "LIBTORCH" "TIMEOUT;INTERNAL" "SOURCES;LINKS" ${ARGN})
   set(name test-${component})
   if(NOT ARG_SOURCES)
     file(GLOB ARG_SOURCES CONFIGURE_DEPENDS *_test.cpp)
@@ -115,5 +115,6 @@ function(elrom_tests component)
     set(ARG_TIMEOUT 120)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  gtest_discover_tests(${name} TEST_PREFIX ${component}/ DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT} ${ARG_PROPERTIES})
+  gtest_discover_tests(${name} TEST_PREFIX ${component}/ DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
+                       PROPERTIES TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -52,11 +52,6 @@ bool StageCache::read(const std::filesystem::path& path, const std::string& dige
   return false;
 }
 
-bool StageCache::has(const std::string& stage, const std::string& name, const std::string& digest) const {
-  const auto file = path(stage, name, digest, ".elrom");
-  return !file.empty() && std::filesystem::exists(file);
-}
-
 TensorFile StageCache::get(const std::string& stage, const std::string& name, const std::string& digest,
                            const std::function<TensorFile()>& make) const {
   const auto target = path(stage, name, digest, ".elrom");

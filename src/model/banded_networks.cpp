@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "dense_kernel.hpp"
 #include "elrom/base/error.hpp"
@@ -43,10 +42,7 @@ std::vector<std::int32_t> planes_to_check(const BandedNetworks::Parts& parts) {
   const bool masked = std::any_of(parts.submodels.begin(), parts.submodels.end(),
                                   [](const Submodel& submodel) { return !submodel.mask.empty(); });
   if (!masked) return {0};
-  if (!parts.loaded_planes.empty()) return parts.loaded_planes;
-  std::vector<std::int32_t> all(parts.planes.n_planes);
-  std::iota(all.begin(), all.end(), 0);
-  return all;
+  return parts.loaded_planes.numbers(parts.planes.n_planes);
 }
 
 void check_cover(const BandedNetworks::Parts& parts) {

@@ -67,10 +67,11 @@ Submodel load_submodel(const io::TensorFile& file, const std::string& prefix, co
     const auto mask = file.tensor(prefix + "/mask", std::array{n_planes, columns.size()}).u8();
     submodel.mask.assign(mask.begin(), mask.end());
   }
-  const bool answers = wanted.planes.empty() ||
-                       std::any_of(wanted.planes.begin(), wanted.planes.end(), [&](std::int32_t plane) {
-                         return submodel.answers(static_cast<std::size_t>(plane));
-                       });
+  const auto answers_one = [&](const std::vector<std::int32_t>& planes) {
+    return std::any_of(planes.begin(), planes.end(),
+                       [&](std::int32_t plane) { return submodel.answers(static_cast<std::size_t>(plane)); });
+  };
+  const bool answers = wanted.planes.all() || answers_one(wanted.planes.numbers(n_planes));
   if (!answers) return submodel;
   const auto n_builds = size_of(description, "builds");
   if (submodel.scores.size() != n_builds)
@@ -96,10 +97,9 @@ BandedNetworks::Parts load_parts(const io::TensorFile& file, const std::string& 
                   numbers(file, prefix + "/input_relevance")};
   parts.outputs = {file.tensor(prefix + "/output_mean").matrix(),
                    file.tensor(prefix + "/output_deviation").matrix()};
-  for (const auto plane : wanted.planes)
-    if (plane < 0 || static_cast<std::size_t>(plane) >= parts.planes.n_planes)
-      throw InputError({"no such plane", file.where() + ":" + prefix, std::to_string(plane),
-                        "0 to " + std::to_string(parts.planes.n_planes - 1)});
+  if (!wanted.planes.fit(parts.planes.n_planes))
+    throw InputError({"fewer planes than asked for", file.where() + ":" + prefix,
+                      std::to_string(parts.planes.n_planes) + " planes"});
   parts.loaded_planes = wanted.planes;
   const auto& submodels = description.at("submodels");
   for (std::size_t i = 0; i < submodels.size(); ++i) {

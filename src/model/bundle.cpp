@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <numeric>
 
 #include "bundle_info.hpp"
 #include "elrom/base/error.hpp"
@@ -29,11 +28,7 @@ BundleReader::BundleReader(const std::filesystem::path& path, io::Verify verify)
 }
 
 field::Mesh BundleReader::mesh(const MeshPart& part) const {
-  auto planes = part.planes;
-  if (planes.empty()) {
-    planes.resize(n_planes_);
-    std::iota(planes.begin(), planes.end(), 0);
-  }
+  const auto planes = part.planes.numbers(n_planes_);
   field::Mesh mesh;
   mesh.n_planes = planes.size();
   mesh.n_columns = n_columns_;
@@ -53,11 +48,6 @@ field::Mesh BundleReader::mesh(const MeshPart& part) const {
   mesh.centre.resize(static_cast<Eigen::Index>(mesh.n_cells()), 3);
   double* to = mesh.centre.data();
   for (const auto plane : planes) {
-    if (plane < 0 || static_cast<std::size_t>(plane) >= n_planes_) {
-      throw InputError({.what = "no plane " + std::to_string(plane),
-                        .where = file_.where(),
-                        .expected = "0 to " + std::to_string(n_planes_ - 1)});
-    }
     const auto rows = [&](auto values, std::size_t width) {
       return values.subspan(static_cast<std::size_t>(plane) * n_columns_ * width, n_columns_ * width);
     };

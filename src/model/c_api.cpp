@@ -8,7 +8,7 @@
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/model/elrom.h"
-#include "elrom/model/predictor.hpp"
+#include "elrom/model/prediction_file.hpp"
 
 using elrom::model::Predictor;
 
@@ -79,6 +79,16 @@ class Loan {
   const elrom_predictor& owner_;
   std::unique_ptr<Predictor::Scratch> scratch_;
 };
+
+/// One for the process: the HDF5 library is not thread-safe.
+std::mutex& hdf5_library() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+void check_threads(int n_threads) {
+  if (n_threads < 1) throw elrom::UsageError("n_threads must be 1 or more");
+}
 
 std::span<const double> inputs_of(const elrom_predictor& predictor, const double* inputs) {
   need(inputs != nullptr, "inputs");
@@ -156,9 +166,28 @@ int elrom_read_case(const elrom_predictor* p, const char* cases, const char* nam
 int elrom_predict(const elrom_predictor* p, const double* inputs, float* values, int n_threads) {
   return guarded([&] {
     need(p != nullptr && values != nullptr, "predictor or values");
-    if (n_threads < 1) throw elrom::UsageError("n_threads must be 1 or more");
+    check_threads(n_threads);
     Loan loan(*p);
     p->predictor.predict(inputs_of(*p, inputs), {values, p->predictor.size()}, {}, loan.scratch(), n_threads);
+  });
+}
+
+int elrom_write_prediction(const elrom_predictor* p, const double* inputs, const char* name, double load,
+                           const char* path, int n_threads) {
+  return guarded([&] {
+    need(p != nullptr && name != nullptr && path != nullptr, "predictor, name or path");
+    check_threads(n_threads);
+    const auto given = inputs_of(*p, inputs);
+    const auto& predictor = p->predictor;
+    const elrom::field::CaseInputs one{name, load, {given.begin(), given.end()}};
+    const auto assessment = predictor.guard().assess(given);
+    std::vector<float> values(predictor.size());
+    Loan loan(*p);
+    predictor.predict(given, values, {}, loan.scratch(), n_threads);
+    const elrom::model::PredictionFrame frame(predictor, elrom::model::Extent(predictor.bundle()));
+    const std::scoped_lock lock(hdf5_library());
+    elrom::model::write_prediction(
+        frame, {.inputs = &one, .assessment = &assessment, .values = values, .half_width = {}}, path);
   });
 }
 

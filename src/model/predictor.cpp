@@ -26,19 +26,6 @@ std::vector<field::FieldInfo> in_order(std::vector<field::FieldInfo> all,
   return all;
 }
 
-std::vector<std::int32_t> chosen_planes(std::size_t n_planes, std::vector<std::int32_t> wanted) {
-  if (wanted.empty()) {
-    for (std::size_t plane = 0; plane < n_planes; ++plane) wanted.push_back(static_cast<std::int32_t>(plane));
-  }
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const bool ascending = i == 0 || wanted[i] > wanted[i - 1];
-    if (ascending && wanted[i] >= 0 && static_cast<std::size_t>(wanted[i]) < n_planes) continue;
-    throw UsageError({.what = "plane " + std::to_string(wanted[i]) + " cannot be asked for",
-                      .expected = "planes from 0 to " + std::to_string(n_planes - 1) + ", ascending"});
-  }
-  return wanted;
-}
-
 /// Bounds of a field in the cells' own precision; a lower bound of a length (diameter) is exclusive.
 struct Bounds {
   float low = -std::numeric_limits<float>::max(), high = std::numeric_limits<float>::max();
@@ -116,7 +103,7 @@ Predictor::Impl::Impl(BundleReader reader, Selection wanted)
     : bundle(std::move(reader)),
       selection(std::move(wanted)),
       fields(in_order(bundle.info().fields, field::choose_fields(bundle.info().fields, selection.fields))),
-      planes(chosen_planes(bundle.n_planes(), selection.planes)),
+      planes(selection.planes.numbers(bundle.n_planes())),
       models(fields.size()),
       uncertainty(fields.size()),
       quantiles(fields.size(), 0.0F),
@@ -137,7 +124,9 @@ void Predictor::Impl::load(std::size_t i_field) const {
 
 void Predictor::Impl::read(std::size_t i_field) const {
   const auto& name = fields[i_field].name;
-  auto model = bundle.model(name, {selection.planes, selection.best_build_only});
+  // The bundle's numbers: what the model's own part of the file says of its planes is not to be believed yet.
+  const auto wanted = selection.planes.all() ? field::Planes() : field::Planes(planes);
+  auto model = bundle.model(name, {wanted, selection.best_build_only});
   if (selection.interval_level) read_uncertainty(i_field, *selection.interval_level);
   models[i_field] = std::move(model);  // last: it says that all is there
 }
@@ -186,6 +175,7 @@ Predictor::~Predictor() = default;
 Predictor::Predictor(Predictor&&) noexcept = default;
 
 const BundleReader& Predictor::bundle() const { return impl_->bundle; }
+const Selection& Predictor::selection() const { return impl_->selection; }
 const Guard& Predictor::guard() const { return impl_->guard; }
 const std::vector<field::FieldInfo>& Predictor::fields() const { return impl_->fields; }
 std::span<const std::int32_t> Predictor::planes() const { return impl_->planes; }

@@ -39,9 +39,9 @@ std::filesystem::path generated_store(const benchmark::Arguments& arguments,
 
 networks::ScreeningData records_of(const field::FieldData& data, const study::Settings& settings) {
   const auto all = math::all_rows(data.cases->n_cases());
-  const auto part =
-      networks::split_records(data.cases->loads, data.cases->mesh.n_planes, settings.split, base::Seed(1));
-  return networks::make_records(data, all, part, {}).records;
+  const auto part = networks::split_records(data.cases->loads, data.cases->mesh.n_planes,
+                                            networks::part_rule(settings.split), base::Seed(1));
+  return networks::make_records({data, all}, part, {}).records;
 }
 
 // Columns spread over the bands, so that every band's edge is tried.

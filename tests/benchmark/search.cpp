@@ -46,11 +46,12 @@ std::vector<Problem> submodels(const field::SnapshotStore& store, const study::S
   for (const auto& record : store.cases()) names.push_back(record.inputs.name);
   const auto rows = study::hold_out(names, settings.split.held_out);
   const auto cases = study::study_cases(store, settings, rows.building, log);
-  const auto part = networks::split_records(cases.loads, cases.mesh.n_planes, settings.split, base::Seed(1));
+  const auto part = networks::split_records(cases.loads, cases.mesh.n_planes,
+                                            networks::part_rule(settings.split), base::Seed(1));
   std::vector<Problem> problems;
   for (std::size_t f = 0; f < store.fields().size(); f += 3) {
     const field::FieldData data{&cases, store.fields()[f], store.read(store.fields()[f].name, rows.building)};
-    const auto set = networks::make_records(data, math::all_rows(cases.n_cases()), part,
+    const auto set = networks::make_records({data, math::all_rows(cases.n_cases())}, part,
                                             {.encoding = model::PlaneEncodingKind::fourier});
     const auto screening = networks::screen_fast(set.records, settings.screen, {});
     const double middle = math::median(screening.column_error());

@@ -1,4 +1,4 @@
-#include "text_writer.hpp"
+#include "elrom/fields/text_writer.hpp"
 
 #include <gmock/gmock.h>
 
@@ -11,11 +11,16 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+Coordinates coordinates(const test::SampleRun& sample) {
+  const auto& extent = sample.frame.extent;
+  return extent.average() ? coordinates_of(*extent.average()) : coordinates_of(*extent.geometry());
+}
+
 TEST(CsvWriter, WritesOneRowACellWithUnitsInTheHeadings) {
-  const test::SampleRun sample({1});
+  const test::SampleRun sample({.planes = {1}});
   std::string text;
 
-  write_csv(sample.run, sample.prediction(), text);
+  write_csv(sample.frame, coordinates(sample), sample.prediction(), text);
 
   const auto lines = base::split(text, '\n');
   ASSERT_EQ(lines.size(), 6U);
@@ -27,13 +32,13 @@ TEST(CsvWriter, WritesOneRowACellWithUnitsInTheHeadings) {
 }
 
 TEST(CsvWriter, NumbersReadBackToTheSameFloat) {
-  test::SampleRun sample({1});
+  test::SampleRun sample({.planes = {1}});
   sample.values[0] = 0.1F;
   sample.values[1] = 1.17549435e-38F;
   sample.values[2] = -3.4028235e38F;
   std::string text;
 
-  write_csv(sample.run, sample.prediction(), text);
+  write_csv(sample.frame, coordinates(sample), sample.prediction(), text);
 
   const auto lines = base::split(text, '\n');
   for (std::size_t row = 0; row < 3; ++row) {
@@ -42,12 +47,11 @@ TEST(CsvWriter, NumbersReadBackToTheSameFloat) {
 }
 
 TEST(CsvWriter, ProfilesHaveOneRowAPlane) {
-  test::SampleRun sample;
-  sample.run.average.emplace(sample.mesh, sample.run.cells);
+  test::SampleRun sample({.profile = true});
   sample.values = {1, 2, 3, 4, 5, 6};
   std::string text;
 
-  write_csv(sample.run, sample.prediction(), text);
+  write_csv(sample.frame, coordinates(sample), sample.prediction(), text);
 
   const auto lines = base::split(text, '\n');
   ASSERT_EQ(lines.size(), 5U);
@@ -56,10 +60,10 @@ TEST(CsvWriter, ProfilesHaveOneRowAPlane) {
 }
 
 TEST(Sfw3dWriter, HasACommentedHeaderAndColumnsOfFixedWidth) {
-  const test::SampleRun sample({2});
+  const test::SampleRun sample({.planes = {2}});
   std::string text;
 
-  write_sfw3d(sample.run, sample.prediction(), text);
+  write_sfw3d(sample.frame, coordinates(sample), sample.prediction(), text);
 
   EXPECT_THAT(text, HasSubstr("# case case_a\n# validity inside: as good as trained\n"));
   EXPECT_THAT(text, HasSubstr("# 4 cells; columns: x[m] y[m] z[m] pressure[Pa] gas_velocity_z[m/s]\n"));
@@ -70,10 +74,10 @@ TEST(Sfw3dWriter, HasACommentedHeaderAndColumnsOfFixedWidth) {
 }
 
 TEST(FluentWriter, WritesTheInterpolationFormatVersion3) {
-  const test::SampleRun sample({0});
+  const test::SampleRun sample({.planes = {0}});
   std::string text;
 
-  write_fluent(sample.run, sample.prediction(), text);
+  write_fluent(sample.frame, coordinates(sample), sample.prediction(), text);
 
   const auto lines = base::split(text, '\n');
   EXPECT_EQ(base::join({lines.begin(), lines.begin() + 6}, "|"), "3|3|4|2|pressure|z-velocity");

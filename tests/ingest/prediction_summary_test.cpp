@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 
-#include "../../predict/fields/hdf_writer.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/store_summary.hpp"
 #include "elrom/io/hdf5.hpp"
+#include "elrom/model/prediction_file.hpp"
 #include "support/sample_run.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/throws.hpp"
@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 TEST(PredictionSummary, TellsCaseValidityModelInputsAndRanges) {
   const test::TemporaryFolder folder;
   const test::SampleRun sample;
-  fields::write_hdf(sample.run, sample.prediction(), folder / "a.hdf");
+  model::write_prediction(sample.frame, sample.prediction(), folder / "a.hdf");
 
   const auto description = describe_prediction(folder / "a.hdf");
 
@@ -41,7 +41,7 @@ TEST(PredictionSummary, RefusesAnotherKindOfFile) {
 TEST(PredictionSummary, TakesANewerMinorVersionAndRefusesANewerMajorOne) {
   const test::TemporaryFolder folder;
   const test::SampleRun sample;
-  fields::write_hdf(sample.run, sample.prediction(), folder / "a.hdf");
+  model::write_prediction(sample.frame, sample.prediction(), folder / "a.hdf");
   const auto mark = [&](int major, int minor) {
     auto file = io::Hdf5File::open(folder / "a.hdf", io::Hdf5File::Access::edit);
     file.set_integers("format", std::vector<std::int64_t>{major, minor});

@@ -251,7 +251,7 @@ TEST(Bundle, SomePlanesOfTheMeshAreRowsOfTheWhole) {
     EXPECT_EQ(part.volume[i], whole.volume[cell]);
     EXPECT_EQ(part.corners[8 * i + 5], whole.corners[8 * cell + 5]);
   }
-  EXPECT_THROW((void)reader.mesh({.planes = {99}}), InputError);
+  EXPECT_THROW((void)reader.mesh({.planes = {99}}), UsageError);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "elrom/model/elrom.h"
-#include "elrom/model/predictor.hpp"
+#include "elrom/model/prediction_file.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -39,6 +39,30 @@ TEST_F(CApiTest, PredictsWhatThePredictorPredicts) {
   EXPECT_STREQ(elrom_field_unit(predictor, 6), "Pa");
   EXPECT_STREQ(elrom_input_name(predictor, 1), "flow_1");
   EXPECT_EQ(elrom_input_name(predictor, 99), nullptr);
+  elrom_close(predictor);
+}
+
+TEST_F(CApiTest, WritesTheFileThatACppCallerWrites) {
+  Predictor reference(path_);
+  const field::CaseInputs one{"case_a", 0.7, inputs_};
+  const auto assessment = reference.guard().assess(inputs_);
+  std::vector<float> values(reference.size());
+  Predictor::Scratch scratch;
+  reference.predict(inputs_, values, {}, scratch);
+  const PredictionFrame frame(reference, Extent(reference.bundle()));
+  write_prediction(frame, {.inputs = &one, .assessment = &assessment, .values = values, .half_width = {}},
+                   folder_ / "cpp.hdf");
+
+  elrom_predictor* predictor = elrom_open(path_.c_str(), nullptr);
+  ASSERT_NE(predictor, nullptr) << elrom_last_error();
+  const auto target = (folder_ / "c.hdf").string();
+  ASSERT_EQ(elrom_write_prediction(predictor, inputs_.data(), "case_a", 0.7, target.c_str(), 1), 0)
+      << elrom_last_error();
+  EXPECT_EQ(test::read_bytes(folder_ / "c.hdf"), test::read_bytes(folder_ / "cpp.hdf"));
+
+  EXPECT_EQ(elrom_write_prediction(predictor, inputs_.data(), nullptr, 0.7, target.c_str(), 1), 2);
+  EXPECT_EQ(elrom_write_prediction(predictor, inputs_.data(), "a", 0.7, "/nowhere/a.hdf", 1), 1);
+  EXPECT_THAT(elrom_last_error(), HasSubstr("/nowhere"));
   elrom_close(predictor);
 }
 

@@ -1,6 +1,7 @@
 #include "elrom/report/cost.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -13,7 +14,7 @@ namespace elrom::report {
 namespace {
 
 std::filesystem::path file(const std::string& name) {
-  return std::filesystem::path(::testing::TempDir()) / name;
+  return std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + name);
 }
 
 TEST(Cost, FrontLeavesOutWhatAnotherBeatsInEverything) {

@@ -56,6 +56,12 @@ class SmallStudy : public ::testing::Test {
   std::vector<FieldOutcome> run(const std::string& method) {
     return Study(folder.path(), settings(method), {.trainer = trainer}, silent_log(), {}).run();
   }
+  /// All that a run could take up again.
+  void forget() const {
+    for (const auto* name :
+         {"stages", "search.sqlite", "search.sqlite-wal", "search.sqlite-shm", "model.elrom", "peers"})
+      std::filesystem::remove_all(folder.path() / name);
+  }
   std::string bundle_digest() const { return base::sha256_file(folder.path() / "model.elrom"); }
   nlohmann::json timing() const {
     return nlohmann::json::parse(base::read_text(folder.path() / "timing.json"));
@@ -126,10 +132,7 @@ TEST_F(SmallStudy, RunKilledInTheMiddleEndsWithTheSameBundle) {
   run("networks");
   const auto expected = bundle_digest();
   for (const int kill_at : {1, 5, 12}) {
-    for (const auto* name :
-         {"stages", "search.sqlite", "search.sqlite-wal", "search.sqlite-shm", "model.elrom"}) {
-      std::filesystem::remove_all(folder.path() / name);
-    }
+    forget();
     trainer->calls = 0;
     trainer->kill_at = kill_at;
     EXPECT_THROW(run("networks"), Interrupted);
@@ -144,8 +147,7 @@ TEST_F(SmallStudy, RunKilledInTheMiddleEndsWithTheSameBundle) {
 TEST_F(SmallStudy, ThreadsDoNotChangeTheBundle) {
   run("networks");
   const auto two = bundle_digest();
-  std::filesystem::remove_all(folder.path() / "stages");
-  std::filesystem::remove(folder.path() / "search.sqlite");
+  forget();
   auto one_thread = settings("networks");
   one_thread.threads = 1;
 
@@ -207,16 +209,40 @@ TEST_F(SmallStudy, SecondProcessIsRefusedByTheLock) {
 }
 
 TEST_F(SmallStudy, RetrainingReusesTheEarlierPlan) {
-  run("networks");
+  auto one_band = settings("networks");
+  one_band.bands.edges = {1e-9};  // whatever the new cases show
+  Study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {}).fit();
   write_small_store(folder.path() / "snapshots.h5", 4, 20);
-  trainer->calls = 0;
-  Study study(folder.path(), settings("networks"), {.trainer = trainer}, silent_log(), {});
+  Study study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {});
   study.reuse_plans_of(model::BundleReader(folder.path() / "model.elrom").info().cases);
 
   study.fit(folder.path() / "candidate.elrom");
 
   EXPECT_EQ(model::BundleReader(folder.path() / "candidate.elrom").info().cases.size(), 20u);
-  EXPECT_GT(trainer->calls, 0);
+  const auto stages = timing()["stages"];
+  for (const auto* stage : {"screen", "search"}) {
+    EXPECT_EQ(stages[stage]["computed"], 0) << stage;
+    EXPECT_GT(stages[stage]["reused"], 0) << stage;
+  }
+  EXPECT_GT(stages["build"]["computed"], 0);
+}
+
+// A model of reused plans is another one than a model of all cases' own.
+TEST_F(SmallStudy, ARunAfterRetrainingMakesItsOwnPlan) {
+  auto one_band = settings("networks");
+  one_band.bands.edges = {1e-9};
+  Study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {}).fit();
+  write_small_store(folder.path() / "snapshots.h5", 4, 20);
+  {
+    Study study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {});
+    study.reuse_plans_of(model::BundleReader(folder.path() / "model.elrom").info().cases);
+    study.fit(folder.path() / "candidate.elrom");
+  }
+
+  Study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {}).fit();
+
+  EXPECT_EQ(timing()["stages"]["model"]["reused"], 0);
+  EXPECT_GT(timing()["stages"]["search"]["computed"], 0);
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "elrom/field/mesh.hpp"
+#include "elrom/field/planes.hpp"
 
 namespace elrom::test {
 
 /// Some planes of a mesh, with all its points, as a bundle gives them.
-inline field::Mesh mesh_part(const field::Mesh& whole, const std::vector<std::int32_t>& planes) {
+inline field::Mesh mesh_part(const field::Mesh& whole, const field::Planes& asked) {
+  const auto planes = asked.numbers(whole.n_planes);
   auto part = whole;
   part.n_planes = planes.size();
   part.centre.resize(static_cast<Eigen::Index>(part.n_cells()), 3);

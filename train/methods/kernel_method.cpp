@@ -7,6 +7,7 @@
 
 #include "derived_inputs.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/math/pod.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
@@ -75,6 +76,9 @@ class KernelMethod final : public Method {
  public:
   explicit KernelMethod(KernelOptions options) : options_(options) {}
   [[nodiscard]] std::string name() const override { return "kernel"; }
+  [[nodiscard]] std::string key(const std::string&) const override {
+    return base::digest_of_members(name(), options_);
+  }
   [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const override;

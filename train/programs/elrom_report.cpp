@@ -8,6 +8,7 @@
 
 #include "elrom/base/app.hpp"
 #include "elrom/base/atomic_file.hpp"
+#include "elrom/base/comma_list.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/version.hpp"
@@ -103,8 +104,9 @@ void add_accuracy(CLI::App& app, Arguments& arguments) {
   command.add_option("--json", arguments.json, "write all figures as JSON");
   command.add_option("--csv", arguments.csv, "write errors by field, method and case as CSV");
   command.add_option("--html", arguments.html, "write the page: one file that opens offline");
-  command.add_option("--against", arguments.against,
-                     "further bundles (.elrom) or studies to show beside the peers");
+  base::comma_list(command.add_option(
+      "--against", arguments.against,
+      "further bundles (.elrom) or studies to show beside the peers, separated by commas; repeatable"));
   command.add_flag("--small", arguments.small,
                    "accepted for scripts: this command ends within a minute anyway");
   add_common(command, arguments);
@@ -118,7 +120,8 @@ void add_learning_curve(CLI::App& app, Arguments& arguments) {
                      "where to write; default STUDY/learning-curve.json, which the page then shows");
   command.add_option("--method", arguments.method,
                      "method to fit; default: the one that answers for most fields of the study");
-  command.add_option("--fields", arguments.fields, "fields; default: all of the study")->delimiter(',');
+  base::comma_list(command.add_option("--fields", arguments.fields,
+                                      "fields, separated by commas; default: all of the study"));
   command.add_option("--points", arguments.points, "subset sizes from an eighth of the cases to all")
       ->capture_default_str()
       ->check(CLI::Range(2, 50));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "elrom/base/comma_list.hpp"
 
 namespace elrom::programs {
 namespace {
@@ -21,8 +22,8 @@ void StudyArguments::add_to(CLI::App& command) {
   command.add_option("--effort", effort, "quick, standard or thorough [the setting effort, standard]");
   command.add_option("--threads", threads, "threads of every stage, 0: all [the setting threads, 0]");
   command.add_option("--device", device, "where LibTorch trains: cpu or cuda [the setting device, cpu]");
-  command.add_option("--set", settings, "key=value: a setting of study.toml, wins over the file; repeatable")
-      ->allow_extra_args(false);
+  base::repeatable(command.add_option("--set", settings,
+                                      "key=value: a setting of study.toml, wins over the file; repeatable"));
   command.add_flag("--quiet,-q", quiet, "warnings only");
   command.footer(settings_footer);
 }

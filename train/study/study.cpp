@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/atomic_file.hpp"
-#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/math/statistics.hpp"
@@ -133,11 +133,10 @@ struct Study::Impl {
     data.cases = methods.is_peer(name) ? &plain_cases : &cases;
     const FieldStageRequest request{
         .name = name,
-        .candidates = name == "auto" ? methods.candidates() : std::vector{&methods.get(name)},
+        .candidates = methods.candidates_of(name),
         .data = data,
         .band_edges = settings.bands.edges,
-        .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0,
-        .settings_digest = methods.settings_text(name)};
+        .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0};
     auto stage = fit_field(request, cache, context());
     data.cases = &cases;
     return stage;
@@ -179,15 +178,22 @@ struct Study::Impl {
     return {.field = field, .method = best, .cross_validated_nrmse = stage.nrmse(), .bands = {}};
   }
 
+  std::string settings_digest(const std::string& name) {
+    std::vector<std::string> keys;
+    for (const auto* method : methods.candidates_of(name))
+      for (const auto& info : fields) keys.push_back(method->key(info.name));
+    return base::digest_of_members(name, keys);
+  }
+
   void write_bundle(const std::string& name, const std::map<std::string, FieldStage>& stages,
                     const std::filesystem::path& model_path) {
     const bool is_main = name == settings.method;
     const auto path = is_main ? model_path : made(folder / "peers") / (name + ".elrom");
     const StudyBundle bundle{.method = name,
                              .fields = fields,
-                             .cases = cases,
+                             .cases = plain_cases,
                              .store_digest = store.digest(rows.building),
-                             .settings_digest = base::Sha256().add(methods.settings_text(name)).hex()};
+                             .settings_digest = settings_digest(name)};
     const auto begin = Clock::now();
     write_study_bundle(path, bundle, stages);
     cache.clock().add("bundle", std::chrono::duration<double>(Clock::now() - begin).count(), false);

@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "elrom/field/planes.hpp"
+#include "elrom/model/cells.hpp"
+
 namespace elrom::fields {
 
 enum class Format { hdf, csv, txt, ip };
@@ -20,8 +23,8 @@ struct Arguments {
   std::string output = ".";                ///< folder, or "-" for standard output
   std::vector<Format> formats;             ///< at least one
   std::vector<std::string> fields;
-  std::string planes;  ///< "0:10,20"; empty: all
-  std::string region;  ///< "x0:x1,y0:y1,z0:z1" in m; empty: all
+  field::Planes planes;
+  std::optional<model::Box> region;
   bool best_build_only = false;
   std::optional<double> level;  ///< of the prediction intervals
   bool profile = false;
@@ -34,6 +37,7 @@ struct Arguments {
   int n_threads = 0;  ///< 0: all
 
   [[nodiscard]] bool to_standard_output() const { return output == "-"; }
+  [[nodiscard]] bool writes_text() const { return formats != std::vector{Format::hdf}; }
   [[nodiscard]] bool writes(Format format) const {
     return std::find(formats.begin(), formats.end(), format) != formats.end();
   }

@@ -45,7 +45,7 @@ class BandedNetworks : public FieldModel {
     OutputScaler outputs;
     std::vector<Submodel> submodels;
     Combination combination = Combination::mean;
-    std::vector<std::int32_t> loaded_planes;  ///< the planes it answers for; empty: all
+    field::Planes loaded_planes;  ///< the planes it answers for
   };
   /// @throws InputError when the parts do not fit, or a cell is answered by no submodel or by several
   explicit BandedNetworks(Parts parts);

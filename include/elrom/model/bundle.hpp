@@ -12,6 +12,7 @@
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/field/catalogue.hpp"
 #include "elrom/field/mesh.hpp"
+#include "elrom/field/planes.hpp"
 #include "elrom/model/field_model.hpp"
 #include "elrom/model/guard.hpp"
 #include "elrom/model/uncertainty.hpp"
@@ -41,8 +42,8 @@ struct Bundle {
 
 /// What of the mesh is to be read.
 struct MeshPart {
-  std::vector<std::int32_t> planes;  ///< ascending; empty: all. The others are left out, the points are not
-  bool with_corners = true;          ///< false: centres and volumes only
+  field::Planes planes;      ///< the others are left out, their points are not
+  bool with_corners = true;  ///< false: centres and volumes only
   int n_threads = 1;
 };
 
@@ -58,7 +59,7 @@ class BundleReader {
   [[nodiscard]] std::size_t n_planes() const { return n_planes_; }
   [[nodiscard]] std::size_t n_columns() const { return n_columns_; }
   [[nodiscard]] const std::string& mesh_digest() const { return mesh_digest_; }
-  /// @throws InputError for a mesh that is broken or lacks a plane of `part`
+  /// @throws InputError for a mesh that is broken, UsageError when it lacks a plane of `part`
   [[nodiscard]] field::Mesh mesh(const MeshPart& part = {}) const;
   [[nodiscard]] Guard guard() const;
   [[nodiscard]] std::unique_ptr<FieldModel> model(const std::string& field, const Wanted& wanted = {}) const;

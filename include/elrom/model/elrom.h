@@ -49,6 +49,11 @@ ELROM_API int elrom_read_case(const elrom_predictor* predictor, const char* case
 /* All fields of one case: inputs has n_inputs values, values has n_fields * n_planes * n_columns. n_threads >= 1. */
 ELROM_API int elrom_predict(const elrom_predictor* predictor, const double* inputs, float* values,
                             int n_threads);
+/* Predicts one case and writes its file as elrom-predict does (HDF5 for scripts and ParaView; data/FORMATS.md, kind
+ * "elrom-prediction"). name: the case's in the file; load: fraction of full load, NaN: not known. The file appears whole
+ * or not at all; one there is replaced. */
+ELROM_API int elrom_write_prediction(const elrom_predictor* predictor, const double* inputs, const char* name,
+                                     double load, const char* path, int n_threads);
 /* verdict: 0 inside, 1 edge, 2 outside of what was trained; the reason is cut to reason_size and ends with '\0'. */
 ELROM_API int elrom_validity(const elrom_predictor* predictor, const double* inputs, int* verdict,
                              char* reason, size_t reason_size);

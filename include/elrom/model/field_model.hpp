@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "elrom/field/planes.hpp"
 #include "elrom/io/tensor_file.hpp"
 
 namespace elrom::model {
@@ -49,7 +50,7 @@ class Workspace {
 /// What is asked of a model.
 struct Query {
   std::span<const double> inputs;        ///< boundary conditions, SI, (n_inputs)
-  std::span<const std::int32_t> planes;  ///< planes asked for, ascending, (n_query_planes)
+  std::span<const std::int32_t> planes;  ///< numbers of the planes asked for, ascending, (n_query_planes)
   bool best_build_only = false;          ///< the best build instead of the mean of all builds
 };
 
@@ -78,7 +79,7 @@ class FieldModel {
 /// What of a model is to be loaded: predictions of these planes, by these builds. The rest of the file stays unread where the
 /// model's kind allows it.
 struct Wanted {
-  std::vector<std::int32_t> planes;  ///< ascending; empty: all
+  field::Planes planes;
   bool best_build_only = false;
 };
 

@@ -14,10 +14,10 @@
 
 namespace elrom::model {
 
-/// What to load and compute; empty lists stand for all.
+/// What to load and compute.
 struct Selection {
-  std::vector<std::string> fields;
-  std::vector<std::int32_t> planes;  ///< ascending
+  std::vector<std::string> fields;  ///< empty: all
+  field::Planes planes;
   bool best_build_only = false;
   std::optional<double> interval_level;  ///< half-widths of the prediction interval are computed when set
   /// A field's model is read when it is first predicted, not at once: the quickest way to a single
@@ -45,9 +45,10 @@ class Predictor {
   };
 
   [[nodiscard]] const BundleReader& bundle() const;
+  [[nodiscard]] const Selection& selection() const;  ///< as asked for
   [[nodiscard]] const Guard& guard() const;
   [[nodiscard]] const std::vector<field::FieldInfo>& fields() const;  ///< selected, in the bundle's order
-  [[nodiscard]] std::span<const std::int32_t> planes() const;         ///< selected
+  [[nodiscard]] std::span<const std::int32_t> planes() const;         ///< numbers of those selected
   [[nodiscard]] std::size_t n_columns() const;
   /// Values of one case: fields() x planes() x n_columns.
   [[nodiscard]] std::size_t size() const { return fields().size() * planes().size() * n_columns(); }

@@ -1,8 +1,8 @@
-#include "physics_writer.hpp"
+#include "prediction_physics.hpp"
 
 #include <cmath>
 
-namespace elrom::fields {
+namespace elrom::model {
 namespace {
 
 /// What is not known has no attribute.
@@ -10,22 +10,22 @@ void set_known(const io::Hdf5Object& object, const std::string& name, const std:
   if (value && std::isfinite(*value)) object.set_number(name, *value);
 }
 
-void write_planes(const model::Audit& audit, const io::Hdf5Group& group) {
-  const auto column = [&](const char* name, const char* unit, double model::PlaneAudit::*member) {
+void write_planes(const Audit& audit, const io::Hdf5Group& group) {
+  const auto column = [&](const char* name, const char* unit, double PlaneAudit::*member) {
     std::vector<double> values;
     for (const auto& plane : audit.planes) values.push_back(plane.*member);
     group.write<double>(name, values).set_text("unit", unit);
   };
-  column("height", "m", &model::PlaneAudit::height);
-  column("area", "m2", &model::PlaneAudit::area);
-  column("volume_fraction", "1", &model::PlaneAudit::volume_fraction);
-  column("pressure", "Pa", &model::PlaneAudit::pressure);
-  column("gas_flow", "kg/s", &model::PlaneAudit::gas_flow);
-  column("gas_inflow", "kg/s", &model::PlaneAudit::gas_inflow);
-  column("solid_flow", "kg/s", &model::PlaneAudit::solid_flow);
+  column("height", "m", &PlaneAudit::height);
+  column("area", "m2", &PlaneAudit::area);
+  column("volume_fraction", "1", &PlaneAudit::volume_fraction);
+  column("pressure", "Pa", &PlaneAudit::pressure);
+  column("gas_flow", "kg/s", &PlaneAudit::gas_flow);
+  column("gas_inflow", "kg/s", &PlaneAudit::gas_inflow);
+  column("solid_flow", "kg/s", &PlaneAudit::solid_flow);
 }
 
-void write_bounds(const model::Audit& audit, const io::Hdf5Group& group) {
+void write_bounds(const Audit& audit, const io::Hdf5Group& group) {
   std::vector<std::string> fields;
   std::vector<std::int64_t> n_outside, n_not_finite;
   std::vector<double> lowest, highest;
@@ -45,7 +45,7 @@ void write_bounds(const model::Audit& audit, const io::Hdf5Group& group) {
 
 }  // namespace
 
-void write_audit(const model::Audit& audit, const io::Hdf5Group& parent) {
+void write_audit(const Audit& audit, const io::Hdf5Group& parent) {
   const auto group = parent.create_group("audit");
   set_known(group, "solids_kg", audit.solids_kg);
   set_known(group, "inventory_kg", audit.inventory_kg);
@@ -67,7 +67,7 @@ void write_audit(const model::Audit& audit, const io::Hdf5Group& parent) {
   write_bounds(audit, group.create_group("bounds"));
 }
 
-void write_change(const model::ConservationChange& change, const io::Hdf5Group& parent) {
+void write_change(const ConservationChange& change, const io::Hdf5Group& parent) {
   const auto group = parent.create_group("conservation");
   set_known(group, "solids_kg", change.solids_kg);
   group.set_number("volume_fraction_rms", change.volume_fraction_rms);
@@ -77,4 +77,4 @@ void write_change(const model::ConservationChange& change, const io::Hdf5Group& 
   group.set_integer("n_planes_balanced", static_cast<std::int64_t>(change.n_planes_balanced));
 }
 
-}  // namespace elrom::fields
+}  // namespace elrom::model

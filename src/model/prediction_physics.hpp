@@ -4,11 +4,11 @@
 #include "elrom/io/hdf5.hpp"
 #include "elrom/model/audit.hpp"
 
-namespace elrom::fields {
+namespace elrom::model {
 
 /// Group "audit" of `parent`.
-void write_audit(const model::Audit& audit, const io::Hdf5Group& parent);
+void write_audit(const Audit& audit, const io::Hdf5Group& parent);
 /// Group "conservation" of `parent`.
-void write_change(const model::ConservationChange& change, const io::Hdf5Group& parent);
+void write_change(const ConservationChange& change, const io::Hdf5Group& parent);
 
-}  // namespace elrom::fields
+}  // namespace elrom::model

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "cells.hpp"
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/fields/arguments.hpp"
 #include "elrom/model/audit.hpp"
 #include "elrom/model/bundle.hpp"
+#include "elrom/model/cells.hpp"
 
 namespace elrom::fields {
 
@@ -27,7 +27,7 @@ struct PhysicsResult {
 class Physics {
  public:
   /// @throws UsageError when cells, fields or inputs are missing that the audit or the repair need
-  Physics(const Arguments& arguments, const model::BundleReader& bundle, const Cells& cells);
+  Physics(const Arguments& arguments, const model::BundleReader& bundle, const model::Cells& cells);
 
   /// @param values all cells of the chosen fields; changed with --conserve. @throws NumericalError (the case
   /// has more solids than its furnace can hold)

@@ -1,0 +1,62 @@
+#include "targets.hpp"
+
+#include <cstdio>
+
+#include "elrom/base/error.hpp"
+
+namespace elrom::fields {
+namespace {
+
+const char* extension_of(Format format) {
+  switch (format) {
+    case Format::hdf:
+      return ".hdf";
+    case Format::csv:
+      return ".csv";
+    case Format::txt:
+      return ".txt";
+    case Format::ip:
+      return ".ip";
+  }
+  return "";
+}
+
+void write_all(std::FILE* stream, const std::string& text, const std::string& where) {
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
+  if (!written) throw SystemError({.what = "cannot write", .where = where, .advice = "is the disk full?"});
+}
+
+void write_text_file(const std::filesystem::path& path, const std::string& text) {
+  std::FILE* stream = std::fopen(path.c_str(), "wb");
+  if (stream == nullptr) throw SystemError({.what = "cannot write", .where = path.string()});
+  try {
+    write_all(stream, text, path.string());
+  } catch (...) {
+    std::fclose(stream);
+    throw;
+  }
+  if (std::fclose(stream) != 0)
+    throw SystemError({.what = "cannot write", .where = path.string(), .advice = "is the disk full?"});
+}
+
+}  // namespace
+
+std::filesystem::path Targets::path(Format format, const field::CaseInputs& inputs) const {
+  return folder_ / (inputs.name + extension_of(format));
+}
+
+std::unique_ptr<base::AtomicFile> Targets::begin(Format format, const field::CaseInputs& inputs) const {
+  return std::make_unique<base::AtomicFile>(path(format, inputs),
+                                            sync_ ? base::Sync::content : base::Sync::none);
+}
+
+void Targets::write(Format format, const field::CaseInputs& inputs, const std::string& text) const {
+  const auto file = begin(format, inputs);
+  write_text_file(file->temporary(), text);
+  file->commit();
+}
+
+void write_to_standard_output(const std::string& text) { write_all(stdout, text, "standard output"); }
+
+}  // namespace elrom::fields
