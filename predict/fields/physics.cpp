@@ -49,13 +49,6 @@ void check_inputs(const Arguments& arguments, const model::BundleReader& bundle)
        .advice = "the bundle was trained without it, so that nothing says how much to conserve"});
 }
 
-std::vector<field::FieldInfo> chosen_fields(const Arguments& arguments, const model::BundleReader& bundle) {
-  std::vector<field::FieldInfo> chosen;
-  for (const auto& info : bundle.info().fields)
-    if (arguments.fields.empty() || contains(arguments.fields, info.name)) chosen.push_back(info);
-  return chosen;
-}
-
 std::string indented(const std::string& lines) {
   std::string text;
   for (const auto& line : base::split(lines, '\n')) {
@@ -80,7 +73,7 @@ Physics::Physics(const Arguments& arguments, const model::BundleReader& bundle, 
   check_inputs(arguments, bundle);
   mesh_ = bundle.mesh();
   schema_ = bundle.info().schema;
-  fields_ = chosen_fields(arguments, bundle);
+  fields_ = field::keep_fields(bundle.info().fields, arguments.fields);
 }
 
 PhysicsResult Physics::apply(const field::CaseInputs& inputs, std::span<float> values) const {

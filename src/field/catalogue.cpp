@@ -48,4 +48,14 @@ Problem unknown_field(std::span<const FieldInfo> known, std::string_view name, c
           .advice = base::name_advice(name, names)};
 }
 
+std::vector<FieldInfo> keep_fields(std::span<const FieldInfo> known, std::span<const std::string> names,
+                                   const std::string& where) {
+  const auto chosen = choose_fields(known, names, where);
+  std::vector<FieldInfo> kept;
+  std::ranges::copy_if(known, std::back_inserter(kept), [&](const FieldInfo& info) {
+    return std::ranges::find(chosen, info.name, &FieldInfo::name) != chosen.end();
+  });
+  return kept;
+}
+
 }  // namespace elrom::field

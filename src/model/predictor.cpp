@@ -17,15 +17,6 @@ namespace {
 /// models' kernels work on whole vectors of planes.
 constexpr std::size_t plane_grain = 16;
 
-/// In the bundle's order, whatever that of the names.
-std::vector<field::FieldInfo> in_order(std::vector<field::FieldInfo> all,
-                                       const std::vector<field::FieldInfo>& chosen) {
-  std::erase_if(all, [&](const field::FieldInfo& info) {
-    return std::ranges::find(chosen, info.name, &field::FieldInfo::name) == chosen.end();
-  });
-  return all;
-}
-
 /// Bounds of a field in the cells' own precision; a lower bound of a length (diameter) is exclusive.
 struct Bounds {
   float low = -std::numeric_limits<float>::max(), high = std::numeric_limits<float>::max();
@@ -102,7 +93,7 @@ struct Predictor::Impl {
 Predictor::Impl::Impl(BundleReader reader, Selection wanted)
     : bundle(std::move(reader)),
       selection(std::move(wanted)),
-      fields(in_order(bundle.info().fields, field::choose_fields(bundle.info().fields, selection.fields))),
+      fields(field::keep_fields(bundle.info().fields, selection.fields)),
       planes(selection.planes.numbers(bundle.n_planes())),
       models(fields.size()),
       uncertainty(fields.size()),

@@ -22,6 +22,15 @@ TEST(ChooseFields, KeepsTheOrderOfTheNamesAndTakesAllWithoutAny) {
   EXPECT_EQ(choose_fields(standard_fields(), Names{"pressure"}).front().unit, "Pa");
 }
 
+TEST(KeepFields, KeepsTheOrderOfTheFields) {
+  const auto kept = keep_fields(standard_fields(), Names{"pressure", "gas_velocity_z"});
+
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0].name, "gas_velocity_z");
+  EXPECT_EQ(keep_fields(standard_fields(), {}).size(), standard_fields().size());
+  EXPECT_ERROR(UsageError, "did you mean 'pressure'?", keep_fields(standard_fields(), Names{"presure"}));
+}
+
 TEST(ChooseFields, AnUnknownNameIsRefusedWithTheNearest) {
   EXPECT_ERROR(UsageError, "unknown field 'presure' in fields.names; did you mean 'pressure'?",
                choose_fields(standard_fields(), Names{"pressure", "presure"}, "fields.names"));

@@ -12,7 +12,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-
 io::Tensor to_file(const ::torch::Tensor& tensor) {
   const auto host = tensor.to(::torch::kCPU).contiguous();
   const auto n = static_cast<std::size_t>(host.numel());

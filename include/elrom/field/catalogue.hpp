@@ -52,4 +52,9 @@ template <class Fault = UsageError>
   return chosen;
 }
 
+/// The same in the order of `known`.
+[[nodiscard]] std::vector<FieldInfo> keep_fields(std::span<const FieldInfo> known,
+                                                 std::span<const std::string> names,
+                                                 const std::string& where = {});
+
 }  // namespace elrom::field
