@@ -1,6 +1,7 @@
 #include "elrom/field/catalogue.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "elrom/base/text.hpp"
 
