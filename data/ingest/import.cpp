@@ -69,19 +69,7 @@ class Exchange {
 
 std::vector<field::FieldInfo> fields_of_new_store(const ImportOptions& options, const CfdCase& first) {
   if (options.fields.empty()) return {field::standard_fields().begin(), field::standard_fields().end()};
-  std::vector<std::string> names;
-  for (const auto& f : first.fields) names.push_back(f.name);
-  std::vector<field::FieldInfo> fields;
-  for (const auto& name : options.fields) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
-      throw InputError({.what = "missing field '" + name + "'",
-                        .where = first.record.source,
-                        .advice = base::name_advice(name, names)});
-    }
-    fields.push_back(first.fields[static_cast<std::size_t>(found - names.begin())]);
-  }
-  return fields;
+  return field::choose_fields<InputError>(first.fields, options.fields, first.record.source);
 }
 
 // The furnace description that the user names, or that lies beside the mesh.

@@ -1,13 +1,15 @@
 #include "elrom/ingest/import_checked.hpp"
 
-#include <map>
 #include <set>
 
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
-#include "elrom/base/text.hpp"
 
 namespace elrom::ingest {
 namespace {
+
+constexpr base::EnumNames<Policy, 3> policies{
+    "policy", {{Policy::refuse, "refuse"}, {Policy::drop, "drop"}, {Policy::keep, "keep"}}};
 
 class Gate {
  public:
@@ -67,14 +69,7 @@ class Gate {
 
 }  // namespace
 
-Policy policy_of(std::string_view name) {
-  const std::map<std::string, Policy> known{
-      {"refuse", Policy::refuse}, {"drop", Policy::drop}, {"keep", Policy::keep}};
-  const auto found = known.find(std::string(name));
-  if (found != known.end()) return found->second;
-  throw UsageError({.what = "unknown policy '" + std::string(name) + "'",
-                    .advice = base::name_advice(name, {"refuse", "drop", "keep"})});
-}
+Policy policy_of(std::string_view name) { return policies.value<UsageError>(name); }
 
 ImportSummary import_checked(const ImportOptions& options, Policy policy, Log& log,
                              const std::stop_token& stop) {

@@ -59,13 +59,6 @@ field::Furnace furnace_of(const Arguments& arguments, const model::BundleReader&
        .advice = "describe the furnace to the store (elrom-data import --furnace) and train again"});
 }
 
-std::vector<field::FieldInfo> chosen_fields(const Arguments& arguments, const model::BundleReader& bundle) {
-  std::vector<field::FieldInfo> chosen;
-  for (const auto& info : bundle.info().fields)
-    if (arguments.fields.empty() || contains(arguments.fields, info.name)) chosen.push_back(info);
-  return chosen;
-}
-
 std::string indented(const std::string& lines) {
   std::string text;
   for (const auto& line : base::split(lines, '\n')) {
@@ -91,7 +84,7 @@ Physics::Physics(const Arguments& arguments, const model::BundleReader& bundle, 
   settings_ = model::audit_settings(furnace_of(arguments, bundle));
   mesh_ = bundle.mesh();
   schema_ = bundle.info().schema;
-  fields_ = chosen_fields(arguments, bundle);
+  fields_ = field::keep_fields(bundle.info().fields, arguments.fields);
 }
 
 PhysicsResult Physics::apply(const field::CaseInputs& inputs, std::span<float> values) const {

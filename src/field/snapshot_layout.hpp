@@ -6,14 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "elrom/base/version.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/io/hdf5.hpp"
 
 namespace elrom::field::detail {
-
-inline constexpr const char* store_kind = "elrom-snapshots";
-inline constexpr FormatVersion store_format{1, 1};  // 1.1: furnace
 
 void write_schema(const io::Hdf5Group& root, const InputSchema& schema);
 [[nodiscard]] InputSchema read_schema(const io::Hdf5Group& root);

@@ -95,14 +95,14 @@ struct SnapshotWriter::Impl {
       start_new();
     if (furnace) {
       detail::write_furnace(*file, *furnace);
-      io::write_kind(*file, detail::store_kind, detail::store_format);  // an older store may be continued
+      io::write_kind(*file, io::kinds::snapshots);  // an older store may be continued
     }
     n_old = cases.size();
   }
 
   void start_new() {
     file = io::Hdf5File::create(target->temporary());
-    io::write_kind(*file, detail::store_kind, detail::store_format);
+    io::write_kind(*file, io::kinds::snapshots);
     write_mesh(file->create_group("mesh"), mesh);
     detail::write_schema(*file, schema);
     detail::create_fields(*file, fields, mesh);

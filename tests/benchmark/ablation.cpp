@@ -16,6 +16,7 @@
 #include <numeric>
 
 #include "elrom/base/text.hpp"
+#include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/kernel_method.hpp"
 #include "elrom/methods/networks_method.hpp"
@@ -250,7 +251,7 @@ class Workbench {
     for (auto& outcome : outcomes) outcome.seconds = watch.seconds();
     for (std::size_t r = 0; r < outcomes.size(); ++r)
       outcomes[r].held_out =
-          std::sqrt(squared_error(*variant.readings[r].read(whole, data_), judged_) / departure(judged_));
+          math::nrmse(squared_error(*variant.readings[r].read(whole, data_), judged_), departure(judged_));
     const auto folds = methods::load_grouped_folds(cases_.loads, building_, n_folds);
     for (std::size_t k = 0; k < folds.size(); ++k) {
       const Model model = method->fit(data_, methods::rows_without(folds, k), context());
@@ -258,7 +259,7 @@ class Workbench {
         squares[r] += squared_error(*variant.readings[r].read(model, data_), folds[k]);
     }
     for (std::size_t r = 0; r < squares.size(); ++r)
-      outcomes[r].cross = std::sqrt(squares[r] / departure(building_));
+      outcomes[r].cross = math::nrmse(squares[r], departure(building_));
     return outcomes;
   }
 

@@ -106,7 +106,7 @@ TEST(Bundle, RejectsNewerMajorVersion) {
 
   const auto message = message_of(folder / "a");
 
-  EXPECT_THAT(message, HasSubstr("found 2.0, expected 1.x"));
+  EXPECT_THAT(message, HasSubstr("found elrom-bundle 2.0, expected elrom-bundle 1.x"));
   EXPECT_THAT(message, HasSubstr("use the ELROM that wrote it"));
 }
 
@@ -124,7 +124,7 @@ TEST(Bundle, RejectsAnotherKindOfTensorFile) {
   other.set_text("kind", "something-else");
   other.write(folder / "a");
 
-  EXPECT_THAT(message_of(folder / "a"), HasSubstr("kind 'something-else', expected 'elrom-bundle'"));
+  EXPECT_THAT(message_of(folder / "a"), HasSubstr("found something-else, expected elrom-bundle"));
 }
 
 TEST(Bundle, RejectsABrokenDescription) {

@@ -29,7 +29,8 @@ class SmallStudy {
     write_store();
     write_models(main_method);
     base::write_text(folder_ / "timing.json",
-                     R"({"stages": {"model": {"seconds": 3}}, "methods": {"auto": 2.5, "nearest": 0.25}})");
+                     R"({"kind": "elrom-timing", "format": [1, 0],
+                         "stages": {"model": {"seconds": 3}}, "methods": {"auto": 2.5, "nearest": 0.25}})");
   }
   ~SmallStudy() { std::filesystem::remove_all(folder_); }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }

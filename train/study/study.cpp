@@ -38,23 +38,6 @@ std::filesystem::path store_path(const std::filesystem::path& folder, const Sett
   return store.is_absolute() ? store : folder / store;
 }
 
-std::vector<field::FieldInfo> chosen_fields(const field::SnapshotStore& store, const Settings& settings) {
-  if (settings.fields.empty()) return store.fields();
-  std::vector<std::string> known;
-  for (const auto& info : store.fields()) known.push_back(info.name);
-  std::vector<field::FieldInfo> chosen;
-  for (const auto& name : settings.fields) {
-    const auto found = std::ranges::find(store.fields(), name, &field::FieldInfo::name);
-    if (found == store.fields().end()) {
-      throw UsageError({.what = "unknown field '" + name + "'",
-                        .where = "fields.names",
-                        .advice = base::name_advice(name, known)});
-    }
-    chosen.push_back(*found);
-  }
-  return chosen;
-}
-
 }  // namespace
 
 struct Study::Impl {
@@ -69,7 +52,7 @@ struct Study::Impl {
         store(field::SnapshotStore::open(store_path(folder, settings))),
         rows(held_out_rows()),
         cases(study_cases(store, settings, rows.building, log)),
-        fields(chosen_fields(store, settings)),
+        fields(field::choose_fields(store.fields(), settings.fields, "fields.names")),
         cache(folder / "stages", log),
         trials(folder / "search.sqlite"),
         workers(toolbox.workers),

@@ -31,16 +31,16 @@ struct Finding {
   std::string message;     ///< one sentence, complete in itself
 };
 
-[[nodiscard]] CaseView view_of(const CfdCase& one);
+[[nodiscard]] CheckedCase view_of(const CfdCase& one);
 /// @param fields (n_fields, n_cells); everything must outlive the view
-[[nodiscard]] CaseView view_of(const field::CaseRecord& record, const MatrixF& values,
-                               const field::Mesh& mesh, const field::InputSchema& schema,
-                               std::span<const field::FieldInfo> fields);
+[[nodiscard]] CheckedCase view_of(const field::CaseRecord& record, const MatrixF& values,
+                                  const field::Mesh& mesh, const field::InputSchema& schema,
+                                  std::span<const field::FieldInfo> fields);
 
 /// Takes cases one after another and keeps a summary of each. Thread rule: one thread at a time.
 class Checker {
  public:
-  void add(const CaseView& view);
+  void add(const CheckedCase& view);
   /// Every case of a store; one case is resident at a time. A case whose checksum fails becomes a finding.
   void add(const field::SnapshotStore& store);
   /// A file that could not even be read.
