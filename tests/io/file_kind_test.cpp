@@ -168,23 +168,31 @@ TEST(FileKind, KindsAreSpelledOutInTheTableAlone) {
     }
 }
 
+/// The context counts how often it is computed.
+struct AnswerStage {
+  static constexpr const char* stage = "build";
+  static constexpr int version = 1;
+  int question = 0;
+  [[nodiscard]] TensorFile compute(int* const& made) const {
+    ++*made;
+    TensorFile file;
+    file.set_text("answer", "42");
+    return file;
+  }
+};
+
 TEST(StageCache, AKeptResultOfANewerMinorVersionIsTakenAndOfANewerMajorOneMadeAgain) {
   const test::TemporaryFolder folder;
   const StageCache cache(folder.path());
+  const AnswerStage stage{7};
   int made = 0;
-  const auto get = [&] {
-    return cache.get("build", "x", std::string(64, 'a'), [&] {
-      ++made;
-      TensorFile file;
-      file.set_text("answer", "42");
-      return file;
-    });
-  };
+  const auto get = [&] { return cache.get("x", stage, &made); };
   static_cast<void>(get());
-  const auto path = cache.path("build", "x", std::string(64, 'a'), ".elrom");
+  const auto path = cache.path("build", "x", stage, ".elrom");
   const auto mark = [&](const FileKind& as) {
     TensorFile copy;
-    for (const auto& [key, text] : TensorFile::open(path).texts()) copy.set_text(key, text);
+    const auto file = TensorFile::open(path);
+    for (const auto& [key, text] : file.texts()) copy.set_text(key, text);
     write_kind(copy, as);
     copy.write(path);
   };
