@@ -16,6 +16,7 @@
 #include <numeric>
 
 #include "elrom/base/text.hpp"
+#include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/kernel_method.hpp"
 #include "elrom/methods/networks_method.hpp"
@@ -80,13 +81,12 @@ class Workbench {
         trainer_(elrom::torch::make_torch_trainer()),
         store_(field::SnapshotStore::open(options.store)) {
     const auto used = settings({});
-    std::vector<std::string> names;
-    for (const auto& record : store_.cases()) names.push_back(record.inputs.name);
-    const auto held = study::hold_out(names, used.split.held_out);
+    const auto held = study::hold_out(store_, study::held_out_patterns(store_, used, silent_log()));
     // Repeated runs judge noise, not skill: held out, but not judged.
     Rows rows = held.building;
     for (const std::size_t row : held.held_out)
-      if (!base::matches(names[row], "rep*")) rows.push_back(row);
+      if (!store_.furnace() || !store_.furnace()->is_repeat(store_.cases()[row].inputs.name))
+        rows.push_back(row);
     cases_ = study::study_cases(store_, used, rows, silent_log());
     rows_ = rows;
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -251,7 +251,7 @@ class Workbench {
     for (auto& outcome : outcomes) outcome.seconds = watch.seconds();
     for (std::size_t r = 0; r < outcomes.size(); ++r)
       outcomes[r].held_out =
-          std::sqrt(squared_error(*variant.readings[r].read(whole, data_), judged_) / departure(judged_));
+          math::nrmse(squared_error(*variant.readings[r].read(whole, data_), judged_), departure(judged_));
     const auto folds = methods::load_grouped_folds(cases_.loads, building_, n_folds);
     for (std::size_t k = 0; k < folds.size(); ++k) {
       const Model model = method->fit(data_, methods::rows_without(folds, k), context());
@@ -259,7 +259,7 @@ class Workbench {
         squares[r] += squared_error(*variant.readings[r].read(model, data_), folds[k]);
     }
     for (std::size_t r = 0; r < squares.size(); ++r)
-      outcomes[r].cross = std::sqrt(squares[r] / departure(building_));
+      outcomes[r].cross = math::nrmse(squares[r], departure(building_));
     return outcomes;
   }
 

@@ -14,6 +14,7 @@
 
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/math/statistics.hpp"
 #include "support/benchmark.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -82,7 +83,7 @@ Json report_of(const Trial& trial, const Options& options, const std::filesystem
 /// Sums of squares of one method in one field, which trials can be added in.
 struct Sums {
   double error = 0, departure = 0;
-  [[nodiscard]] double nrmse() const { return departure > 0 ? std::sqrt(error / departure) : 0; }
+  [[nodiscard]] double nrmse() const { return math::nrmse(error, departure, 0); }
 };
 
 /// One trial, or several scored together.

@@ -102,9 +102,7 @@ Json measure(const benchmark::Arguments& arguments) {
   auto settings = study::read_settings({});
   if (arguments.small) settings.screen.max_epochs = 15;
   const auto log = make_console_log();
-  std::vector<std::string> names;
-  for (const auto& record : store.cases()) names.push_back(record.inputs.name);
-  const auto rows = study::hold_out(names, settings.split.held_out);
+  const auto rows = study::hold_out(store, study::held_out_patterns(store, settings, *log));
   const auto cases = study::study_cases(store, settings, rows.building, *log);
   Totals totals;
   for (const auto& info : store.fields()) {

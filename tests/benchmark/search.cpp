@@ -44,9 +44,7 @@ std::filesystem::path shipped_store(const std::filesystem::path& folder) {
 // Every third field, its columns in two halves by the closed-form screen: an easy and a hard submodel.
 std::vector<Problem> submodels(const field::SnapshotStore& store, const study::Settings& settings, bool small,
                                Log& log) {
-  std::vector<std::string> names;
-  for (const auto& record : store.cases()) names.push_back(record.inputs.name);
-  const auto rows = study::hold_out(names, settings.split.held_out);
+  const auto rows = study::hold_out(store, study::held_out_patterns(store, settings, log));
   const auto cases = study::study_cases(store, settings, rows.building, log);
   const auto part = networks::split_records(cases.loads, cases.mesh.n_planes,
                                             networks::part_rule(settings.split), base::Seed(1));

@@ -133,7 +133,7 @@ Fit fit_by(std::shared_ptr<const methods::Method> method) {
 
 std::unique_ptr<model::FieldModel> fit_blend(const field::FieldData& data,
                                              const methods::FitContext& context) {
-  std::vector<model::BlendModel::Part> parts;
+  std::vector<model::BlendModel::Member> parts;
   for (const std::string name : {"linear", "pod_rbf"})
     parts.push_back({{0.5}, fit_with(*methods::make_peer(name), data, context)});
   return std::make_unique<model::BlendModel>(std::move(parts));

@@ -124,6 +124,7 @@ std::map<std::string, Effect> effects() {
           {"split.by", {"record", from_records}},
           {"split.fractions", {"[0.6, 0.3, 0.1]", from_records}},
           {"symmetry.enabled", {"false", from_search}},
+          {"symmetry.mirror", {"[{ axis = \"x\" }]", from_search}},
           {"screen.method", {"fast", screen + networks}},
           {"screen.builds", {"2", screen + networks}},
           {"screen.n_units", {"3", screen + networks}},

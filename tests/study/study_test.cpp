@@ -12,10 +12,13 @@
 #include "elrom/model/predictor.hpp"
 #include "elrom/study/held_out.hpp"
 #include "study_fixture.hpp"
+#include "support/recording_log.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace elrom::study {
 namespace {
+
+using ::testing::HasSubstr;
 
 // "Trains" a network without hidden layers: the targets' mean as bias. Counts its calls; can be killed.
 class MeanTrainer final : public networks::Trainer {
@@ -84,6 +87,83 @@ TEST_F(SmallStudy, RunWritesModelPeersSplitAndSettings) {
   const auto split = read_split(folder.path() / "split.json");
   EXPECT_EQ(split.held_out.size(), 4u);
   EXPECT_EQ(split.train.size() + split.validation.size() + split.test.size(), 16u);
+}
+
+TEST_F(SmallStudy, HeldOutCasesAreTheSettingsOrElseTheFurnaces) {
+  run("linear");
+  EXPECT_EQ(read_split(folder.path() / "split.json").held_out.size(), 4u);
+  EXPECT_THAT(base::read_text(folder.path() / "resolved.toml"), HasSubstr("held_out = [\"load_*\"]"));
+
+  base::write_text(folder.path() / "study.toml", "[split]\nheld_out = [\"train_3\"]\n");
+  run("linear");
+  EXPECT_THAT(read_split(folder.path() / "split.json").held_out, ::testing::ElementsAre("train_3"));
+}
+
+TEST_F(SmallStudy, TheBundlesCarryTheStoresFurnace) {
+  run("linear");
+
+  for (const auto* file : {"model.elrom", "peers/nearest.elrom"}) {
+    const auto furnace = model::BundleReader(folder.path() / file).furnace();
+    ASSERT_TRUE(furnace.has_value()) << file;
+    EXPECT_EQ(field::to_toml(*furnace), field::to_toml(small_furnace()));
+  }
+}
+
+// Nothing is trained anew for it, but the bundle is another one.
+TEST_F(SmallStudy, AnotherFurnaceOfTheStoreReachesTheBundle) {
+  run("linear");
+  auto other = small_furnace();
+  other.openings[1].high_m = 3;
+  write_small_store(folder.path() / "snapshots.h5", 0, 0, other);
+
+  run("linear");
+
+  EXPECT_EQ(model::BundleReader(folder.path() / "model.elrom").furnace()->openings[1].high_m, 3);
+}
+
+TEST_F(SmallStudy, WithoutAFurnaceWhatIsMissingIsTold) {
+  std::filesystem::remove(folder.path() / "snapshots.h5");
+  write_small_store(folder.path() / "snapshots.h5", 20, 0, std::nullopt);
+  test::RecordingLog log;
+
+  Study(folder.path(), settings("linear"), {.trainer = trainer}, log, {}).run();
+
+  EXPECT_TRUE(read_split(folder.path() / "split.json").held_out.empty());
+  EXPECT_THAT(log.text(), HasSubstr("no case is held out: the store has no furnace description"));
+  EXPECT_THAT(log.text(), HasSubstr("no mirror images: the store has no furnace description"));
+  EXPECT_FALSE(model::BundleReader(folder.path() / "model.elrom").furnace().has_value());
+}
+
+TEST_F(SmallStudy, AMirrorOfTheFurnaceThatDoesNotFitIsTold) {
+  auto furnace = small_furnace();
+  furnace.mirrors = {{.name = "across", .axis = 'y', .swap = {{"*_left", "*_right"}}}};
+  write_small_store(folder.path() / "snapshots.h5", 0, 0, furnace);
+  test::RecordingLog log;
+
+  const Study study(folder.path(), settings("linear"), {.trainer = trainer}, log, {});
+
+  EXPECT_TRUE(study.cases().mirrors.empty());
+  EXPECT_THAT(log.text(), HasSubstr("mirror 'across' of the furnace not used"));
+}
+
+TEST_F(SmallStudy, MirrorsAreTheFurnacesUnlessTheSettingsDeclareSome) {
+  auto furnace = small_furnace();
+  furnace.mirrors = {{.name = "across", .axis = 'y', .swap = {}}};
+  write_small_store(folder.path() / "snapshots.h5", 0, 0, furnace);
+  const auto names = [&](const Settings& used) {
+    const Study study(folder.path(), used, {.trainer = trainer}, silent_log(), {});
+    std::vector<std::string> found;
+    for (const auto& mirror : study.cases().mirrors) found.push_back(mirror.name);
+    return found;
+  };
+  auto own = settings("linear");
+  own.symmetry.mirrors = {{.name = "along", .axis = 'x', .swap = {}}};
+  auto off = settings("linear");
+  off.symmetry.enabled = false;
+
+  EXPECT_THAT(names(settings("linear")), ::testing::ElementsAre("across"));
+  EXPECT_THAT(names(own), ::testing::ElementsAre("along"));
+  EXPECT_THAT(names(off), ::testing::IsEmpty());
 }
 
 TEST_F(SmallStudy, ModelPredictsHeldOutCasesBetterThanTheirMean) {

@@ -1,5 +1,6 @@
 #include "elrom/networks/stages.hpp"
 
+#include "elrom/base/enum_names.hpp"
 #include "elrom/networks/search.hpp"
 #include "elrom/networks/stage_files.hpp"
 
@@ -7,7 +8,9 @@ namespace elrom::networks {
 namespace {
 
 Relevance relevance_named(const std::string& name) {
-  return name == "linear" ? Relevance::linear : name == "gp" ? Relevance::gp : Relevance::none;
+  constexpr base::EnumNames<Relevance, 3> names{
+      "relevance", {{Relevance::none, "none"}, {Relevance::linear, "linear"}, {Relevance::gp, "gp"}}};
+  return names.value(name);
 }
 
 RecordOptions record_options(const Settings& settings, const std::string& field) {

@@ -38,23 +38,6 @@ std::filesystem::path store_path(const std::filesystem::path& folder, const Sett
   return store.is_absolute() ? store : folder / store;
 }
 
-std::vector<field::FieldInfo> chosen_fields(const field::SnapshotStore& store, const Settings& settings) {
-  if (settings.fields.empty()) return store.fields();
-  std::vector<std::string> known;
-  for (const auto& info : store.fields()) known.push_back(info.name);
-  std::vector<field::FieldInfo> chosen;
-  for (const auto& name : settings.fields) {
-    const auto found = std::ranges::find(store.fields(), name, &field::FieldInfo::name);
-    if (found == store.fields().end()) {
-      throw UsageError({.what = "unknown field '" + name + "'",
-                        .where = "fields.names",
-                        .advice = base::name_advice(name, known)});
-    }
-    chosen.push_back(*found);
-  }
-  return chosen;
-}
-
 }  // namespace
 
 struct Study::Impl {
@@ -67,9 +50,9 @@ struct Study::Impl {
         stop(std::move(stop_)),
         lock(folder / ".lock"),
         store(field::SnapshotStore::open(store_path(folder, settings))),
-        rows(hold_out(names_of(store), settings.split.held_out)),
+        rows(held_out_rows()),
         cases(study_cases(store, settings, rows.building, log)),
-        fields(chosen_fields(store, settings)),
+        fields(field::choose_fields(store.fields(), settings.fields, "fields.names")),
         cache(folder / "stages", log),
         trials(folder / "search.sqlite"),
         workers(toolbox.workers),
@@ -80,10 +63,9 @@ struct Study::Impl {
     write_names();
   }
 
-  static std::vector<std::string> names_of(const field::SnapshotStore& store) {
-    std::vector<std::string> names;
-    for (const auto& record : store.cases()) names.push_back(record.inputs.name);
-    return names;
+  HeldOut held_out_rows() {
+    settings.split.held_out = held_out_patterns(store, settings, log);
+    return hold_out(store, *settings.split.held_out);
   }
 
   [[nodiscard]] base::Seed seed() const { return base::Seed(static_cast<std::uint64_t>(settings.seed)); }
@@ -209,6 +191,7 @@ struct Study::Impl {
     const StudyBundle bundle{.method = name,
                              .fields = fields,
                              .cases = plain_cases,
+                             .furnace = store.furnace(),
                              .store_digest = store.digest(rows.building),
                              .settings_digest = settings_digest(name)};
     const auto begin = Clock::now();

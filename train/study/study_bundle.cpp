@@ -54,6 +54,7 @@ void write_study_bundle(const std::filesystem::path& path, const StudyBundle& st
   }
   bundle.info.accuracy_json = accuracy.dump();
   bundle.mesh = study.cases.mesh;
+  bundle.furnace = study.furnace;
   bundle.guard = model::Guard(study.cases.schema, study.cases.inputs, study.cases.names, study.cases.loads);
   bundle.write(path);
 }

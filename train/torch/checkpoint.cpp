@@ -5,15 +5,12 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
-#include "elrom/base/version.hpp"
 #include "elrom/io/tensor_file.hpp"
 
 namespace elrom::torch {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr FormatVersion format{1, 0};
 
 io::Tensor to_file(const ::torch::Tensor& tensor) {
   const auto host = tensor.to(::torch::kCPU).contiguous();
@@ -69,9 +66,7 @@ std::string training_digest(const networks::TrainingProblem& problem,
 
 void save_checkpoint(const std::filesystem::path& path, const std::string& digest, Training& training) {
   io::TensorFile file;
-  file.set_text("kind", "elrom-checkpoint");
-  file.set_text("format", format.text());
-  file.set_text("program", program_version());
+  io::write_kind(file, io::kinds::checkpoint);
   file.set_text("training", digest);
   file.set_text(
       "state",
@@ -88,7 +83,8 @@ bool load_checkpoint(const std::filesystem::path& path, const std::string& diges
   if (path.empty() || !std::filesystem::exists(path, ignored)) return false;
   try {
     const auto file = io::TensorFile::open(path);
-    if (file.text("kind") != "elrom-checkpoint" || file.text("training") != digest) return false;
+    io::check_kind(file, io::kinds::checkpoint);
+    if (file.text("training") != digest) return false;
     load(file, training);
     return true;
   } catch (const InputError&) {
