@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "elrom/ingest/store_summary.hpp"
 #include "elrom/model/prediction_file.hpp"
 #include "value_range.hpp"

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "elrom/base/text.hpp"
 #include "elrom/ingest/store_summary.hpp"
 

@@ -33,23 +33,33 @@ endfunction()
 # use: the debug preset builds without.
 set(ELROM_COMMON_HEADERS <algorithm> <filesystem> <functional> <map> <memory> <span> <string> <vector>
                          <Eigen/Core> ${PROJECT_SOURCE_DIR}/src/io/json_instances.hpp)
+# Only sources see it, so that who uses an installed ELROM needs no JSON library.
+set(ELROM_JSON $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
 function(elrom_precompile target)
   target_precompile_headers(${target} PRIVATE ${ARGN})
   target_compile_options(${target} PRIVATE -fpch-preprocess)  # lets ccache see through the precompiled header
 endfunction()
 
-# elrom_library(name [SOURCES ...] LINKS ... PRIVATE_LINKS ...) -> target elrom-<name>, alias elrom::<name>, installed with
-# component <name>. Its sources: those of the folder <name>, where none are given.
+# elrom_install(name) -> target elrom-<name> as component <name> of find_package(elrom)
+function(elrom_install name)
+  install(TARGETS elrom-${name} EXPORT elrom-${name}-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT elrom-${name}-targets NAMESPACE elrom:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/elrom)
+endfunction()
+
+# elrom_library(name [SOURCES ...] [HEADERS folders ...] LINKS ... PRIVATE_LINKS ...) -> target elrom-<name>, alias elrom::<name>,
+# installed with component <name>. Its sources: those of the folder <name>, where none are given; its public headers: those of
+# include/elrom/<name>, where no folders are.
 function(elrom_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINKS;PRIVATE_LINKS" ${ARGN})
   if(NOT ARG_SOURCES)
     file(GLOB ARG_SOURCES CONFIGURE_DEPENDS ${name}/*.cpp)
   endif()
   add_library(elrom-${name} STATIC ${ARG_SOURCES})
   add_library(elrom::${name} ALIAS elrom-${name})
   set_target_properties(elrom-${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  target_include_directories(elrom-${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
-  target_link_libraries(elrom-${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
+  target_include_directories(elrom-${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(elrom-${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS} ${ELROM_JSON})
   elrom_compile_options(elrom-${name})
   # One header parsed for all, core's; LibTorch's has its own.
   if(name STREQUAL torch)
@@ -60,8 +70,15 @@ function(elrom_library name)
     target_precompile_headers(elrom-${name} REUSE_FROM elrom-core)
     target_compile_options(elrom-${name} PRIVATE -fpch-preprocess)
   endif()
-  install(TARGETS elrom-${name} EXPORT elrom-${name}-targets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
-  install(EXPORT elrom-${name}-targets NAMESPACE elrom:: DESTINATION lib/cmake/elrom)
+  elrom_install(${name})
+  if(NOT ARG_HEADERS)
+    set(ARG_HEADERS ${name})
+  endif()
+  foreach(folder IN LISTS ARG_HEADERS)
+    # toml++ is ours to read settings with, not our callers'.
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/elrom/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/elrom
+            PATTERN toml.hpp EXCLUDE)
+  endforeach()
 endfunction()
 
 # The optimiser is the larger half of the compile time of tests and of what reads command lines, and none of them computes.
@@ -81,12 +98,12 @@ function(elrom_driver target)
   if(NOT TARGET elrom-driver-headers)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/driver_headers.cpp CONTENT "")
     add_library(elrom-driver-headers OBJECT ${PROJECT_BINARY_DIR}/driver_headers.cpp)
-    target_link_libraries(elrom-driver-headers PRIVATE elrom::core CLI11::CLI11 fmt::fmt)
+    target_link_libraries(elrom-driver-headers PRIVATE elrom::core CLI11::CLI11 fmt::fmt ${ELROM_JSON})
     elrom_compile_options(elrom-driver-headers)
     target_compile_options(elrom-driver-headers PRIVATE ${ELROM_DRIVER_OPTIMISATION})
     elrom_precompile(elrom-driver-headers ${ELROM_COMMON_HEADERS} <CLI/CLI.hpp> <fmt/format.h>)
   endif()
-  target_link_libraries(${target} PRIVATE fmt::fmt)
+  target_link_libraries(${target} PRIVATE fmt::fmt ${ELROM_JSON})
   target_precompile_headers(${target} REUSE_FROM elrom-driver-headers)
   target_compile_options(${target} PRIVATE ${ELROM_DRIVER_OPTIMISATION} -fpch-preprocess)
 endfunction()
@@ -103,11 +120,12 @@ function(elrom_program name)
   target_link_libraries(${target} PRIVATE ${ARG_LINKS})
   elrom_driver(${target})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
-  install(TARGETS ${target} RUNTIME DESTINATION bin)
+  install(TARGETS ${target} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
 function(elrom_test_options target)
   elrom_compile_options(${target})
+  target_link_libraries(${target} PRIVATE ${ELROM_JSON})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${target} PRIVATE ELROM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ELROM_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
 endfunction()

@@ -1,11 +1,17 @@
 #include "elrom/base/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <cfenv>
+#include <latch>
 #include <numeric>
+#include <set>
+#include <thread>
 #include <vector>
 
+#include "elrom/base/child_process.hpp"
 #include "elrom/base/error.hpp"
 
 namespace elrom::base {
@@ -57,6 +63,79 @@ TEST(ParallelFor, StopsOnRequest) {
 
 TEST(ParallelFor, NothingToDoIsFine) {
   EXPECT_NO_THROW(parallel_for(0, 4, [](std::size_t, int) { FAIL(); }));
+}
+
+/// The threads, the caller's among them, of a call that cannot end before all of them take part.
+std::set<pid_t> threads_of_a_call(int n_threads) {
+  std::vector<pid_t> threads(static_cast<std::size_t>(n_threads));
+  std::latch all_here(n_threads);
+  parallel_for(threads.size(), n_threads, [&](std::size_t i, int) {
+    threads[i] = ::gettid();
+    all_here.arrive_and_wait();
+  });
+  return {threads.begin(), threads.end()};
+}
+
+TEST(ParallelFor, TheNextCallHasTheSameThreads) {
+  const auto first = threads_of_a_call(3);
+
+  EXPECT_EQ(first.size(), 3U);
+  EXPECT_EQ(threads_of_a_call(3), first);
+  EXPECT_TRUE(first.contains(::gettid()));
+}
+
+TEST(ParallelFor, TheTeamOutlivesAnException) {
+  const auto first = threads_of_a_call(2);
+  std::latch both_here(2);
+  EXPECT_THROW(parallel_for(2, 2,
+                            [&](std::size_t, int) {
+                              both_here.arrive_and_wait();
+                              throw InputError("bad");
+                            }),
+               InputError);
+
+  EXPECT_EQ(threads_of_a_call(2), first);
+}
+
+TEST(ParallelFor, CallsInsideCallsAndFromSeveralThreadsAtOnceComeToAnEnd) {
+  std::atomic<int> calls{0};
+  {
+    std::vector<std::jthread> callers;
+    for (int caller = 0; caller < 4; ++caller)
+      callers.emplace_back([&] {
+        for (int time = 0; time < 50; ++time)
+          parallel_for(3, 3,
+                       [&](std::size_t, int) { parallel_for(5, 2, [&](std::size_t, int) { ++calls; }); });
+      });
+  }
+  EXPECT_EQ(calls, 4 * 50 * 3 * 5);
+}
+
+TEST(ParallelFor, AForkedChildHasATeamOfItsOwn) {
+#if defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the thread sanitizer has no threads after a fork";
+#endif
+  const auto before = threads_of_a_call(3);
+
+  EXPECT_NO_THROW(try_in_child("the team", "child",
+                               [] { check(threads_of_a_call(3).size() == 3, "three threads"); },
+                               {.seconds = 20, .memory_bytes = std::size_t{1} << 30}));
+  EXPECT_EQ(threads_of_a_call(3), before);
+}
+
+TEST(ParallelFor, AllThreadsCountAsTheCallerDoes) {
+  static_cast<void>(threads_of_a_call(2));
+  const int before = std::fegetround();
+  std::vector<int> rounding(2);
+  std::latch both_here(2);
+  std::fesetround(FE_UPWARD);
+  parallel_for(2, 2, [&](std::size_t i, int) {
+    rounding[i] = std::fegetround();
+    both_here.arrive_and_wait();
+  });
+  std::fesetround(before);
+
+  EXPECT_EQ(rounding, std::vector<int>(2, FE_UPWARD));
 }
 
 }  // namespace

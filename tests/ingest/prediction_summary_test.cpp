@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/store_summary.hpp"
 #include "elrom/io/hdf5.hpp"

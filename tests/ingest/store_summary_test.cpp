@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
 #include "elrom/ingest/generate.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"

@@ -2,7 +2,7 @@
 // What is in a store, a mesh, a case, a bundle or a prediction, for `elrom-data inspect`: numbers in the
 // user's units, as text and as JSON.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "elrom/field/mesh.hpp"
