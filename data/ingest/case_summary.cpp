@@ -11,7 +11,7 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<int, 3> boxes{4, 6, 12};  // in x, y, z
 
-std::ptrdiff_t find_field(const CaseView& view, std::string_view name) {
+std::ptrdiff_t find_field(const CheckedCase& view, std::string_view name) {
   for (std::size_t f = 0; f < view.fields.size(); ++f) {
     if (view.fields[f].name == name) return static_cast<std::ptrdiff_t>(f);
   }
@@ -21,7 +21,7 @@ std::ptrdiff_t find_field(const CaseView& view, std::string_view name) {
 /// Where cells lie, relative to the box around all centres, and what they weigh.
 class Geometry {
  public:
-  explicit Geometry(const CaseView& view) : view_(view) {
+  explicit Geometry(const CheckedCase& view) : view_(view) {
     low_ = view.centre->colwise().minCoeff();
     high_ = view.centre->colwise().maxCoeff();
   }
@@ -43,7 +43,7 @@ class Geometry {
   [[nodiscard]] double extent(int d) const { return high_(d) - low_(d); }
 
  private:
-  const CaseView& view_;
+  const CheckedCase& view_;
   Eigen::RowVector3d low_, high_;
 };
 
@@ -64,7 +64,7 @@ double mean(Eigen::Index n, Value value, Weight weight, Wanted wanted) {
 
 class Measuring {
  public:
-  Measuring(const CaseView& view, const Geometry& geometry) : view_(view), geometry_(geometry) {}
+  Measuring(const CheckedCase& view, const Geometry& geometry) : view_(view), geometry_(geometry) {}
 
   [[nodiscard]] std::array<double, n_measures> all() const {
     std::array<double, n_measures> m{};
@@ -121,11 +121,11 @@ class Measuring {
     return total * mean(view_.values.cols(), value(e), cell_weight(), everywhere);
   }
 
-  const CaseView& view_;
+  const CheckedCase& view_;
   const Geometry& geometry_;
 };
 
-MatrixF make_sketch(const CaseView& view, const Geometry& geometry) {
+MatrixF make_sketch(const CheckedCase& view, const Geometry& geometry) {
   const Eigen::Index n_boxes = boxes[0] * boxes[1] * boxes[2];
   MatrixD sum = MatrixD::Zero(view.values.rows(), n_boxes), total = sum;
   for (Eigen::Index i = 0; i < view.values.cols(); ++i) {
@@ -143,7 +143,7 @@ MatrixF make_sketch(const CaseView& view, const Geometry& geometry) {
 
 /// Adds to `bad` the cells of field f for which `wrong` holds, as one entry.
 template <class Wrong>
-void note_cells(const CaseView& view, Eigen::Index f, Wrong wrong, std::vector<BadCell>& bad) {
+void note_cells(const CheckedCase& view, Eigen::Index f, Wrong wrong, std::vector<BadCell>& bad) {
   BadCell found;
   for (Eigen::Index i = 0; i < view.values.cols(); ++i) {
     if (!wrong(view.values(f, i))) continue;
@@ -165,7 +165,7 @@ std::string_view field_of(Measure measure) {
   return names[static_cast<std::size_t>(measure)];
 }
 
-CaseSummary summarise(const CaseView& view) {
+CaseSummary summarise(const CheckedCase& view) {
   const Geometry geometry(view);
   CaseSummary summary;
   summary.name = view.name;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "outliers.hpp"
@@ -12,6 +13,8 @@
 namespace elrom::ingest {
 namespace {
 
+constexpr base::EnumNames<Severity, 3> severities{
+    "severity", {{Severity::note, "note"}, {Severity::suspicious, "suspicious"}, {Severity::wrong, "wrong"}}};
 constexpr std::size_t fewest_for_dead_cells = 3;
 
 bool same_layout(const CaseSummary& a, const CaseSummary& b) {
@@ -95,19 +98,9 @@ std::vector<CaseSummary> comparable(const std::vector<CaseSummary>& cases, std::
 
 }  // namespace
 
-std::string_view name_of(Severity severity) {
-  switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::suspicious:
-      return "suspicious";
-    case Severity::wrong:
-      return "wrong";
-  }
-  return "wrong";
-}
+std::string_view name_of(Severity severity) { return severities.name(severity); }
 
-CaseView view_of(const CfdCase& one) {
+CheckedCase view_of(const CfdCase& one) {
   const auto& inputs = one.record.inputs;
   return {.name = inputs.name,
           .load = inputs.load,
@@ -119,8 +112,8 @@ CaseView view_of(const CfdCase& one) {
           .values = ConstMapF(one.values.data(), one.values.rows(), one.values.cols())};
 }
 
-CaseView view_of(const field::CaseRecord& record, const MatrixF& values, const field::Mesh& mesh,
-                 const field::InputSchema& schema, std::span<const field::FieldInfo> fields) {
+CheckedCase view_of(const field::CaseRecord& record, const MatrixF& values, const field::Mesh& mesh,
+                    const field::InputSchema& schema, std::span<const field::FieldInfo> fields) {
   return {.name = record.inputs.name,
           .load = record.inputs.load,
           .schema = &schema,
@@ -131,7 +124,7 @@ CaseView view_of(const field::CaseRecord& record, const MatrixF& values, const f
           .values = ConstMapF(values.data(), values.rows(), values.cols())};
 }
 
-void Checker::add(const CaseView& view) {
+void Checker::add(const CheckedCase& view) {
   cases_.push_back(summarise(view));
   if (lowest_.size() == 0) {
     lowest_ = highest_ = view.values;
@@ -162,6 +155,10 @@ void Checker::add(const field::SnapshotStore& store) {
 
 void Checker::add_unreadable(const std::string& name, const std::string& reason) {
   unreadable_.push_back({"unreadable", Severity::wrong, name, "", -1, reason});
+}
+
+void Checker::forget(const std::set<std::string>& names) {
+  std::erase_if(cases_, [&](const CaseSummary& one) { return names.contains(one.name); });
 }
 
 void Checker::add_dead_cells(std::vector<Finding>& found) const {

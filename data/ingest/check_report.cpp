@@ -1,13 +1,13 @@
 #include <nlohmann/json.hpp>
 
-#include "elrom/base/version.hpp"
 #include "elrom/ingest/check.hpp"
+#include "elrom/io/file_kind.hpp"
 
 namespace elrom::ingest {
 
 std::string to_json(const Checker& checker, std::span<const Finding> findings) {
   using nlohmann::ordered_json;
-  ordered_json report{{"kind", "elrom-check"}, {"format", {1, 0}}, {"program", program_version()}};
+  auto report = io::json_head<ordered_json>(io::kinds::check);
   report["cases"] = ordered_json::array();
   for (const auto& one : checker.cases()) report["cases"].push_back(one.name);
   report["findings"] = ordered_json::array();

@@ -99,7 +99,7 @@ void generate(const GenerateOptions& options, Log& log, const std::stop_token& s
   const auto fields = generated_fields(options.n_fields);
   const FieldGenerator generator(mesh, n_x, inputs, fields, options.noise);
   const auto cases = design(options, inputs, seed);
-  field::SnapshotWriter writer(options.store, mesh, schema_of(inputs), fields);
+  field::SnapshotWriter writer(options.store, mesh, schema_of(inputs), fields, generator_furnace(inputs));
   const auto batch = static_cast<std::size_t>(std::max(1, options.n_threads));
   std::vector<field::Snapshot> snapshots(batch);
   for (std::size_t begin = 0; begin < cases.size(); begin += batch) {

@@ -4,6 +4,8 @@
 
 #include <numeric>
 
+#include "elrom/field/mesh.hpp"
+
 namespace elrom::ingest {
 
 namespace {
@@ -82,6 +84,31 @@ std::vector<GeneratorInput> generator_inputs(std::size_t n, base::Seed seed) {
   }
   inputs.resize(n);
   return inputs;
+}
+
+field::Furnace generator_furnace(const std::vector<GeneratorInput>& inputs) {
+  constexpr double height = field::TaperedFurnace{}.height_m, solid_density = 2400;
+  field::Furnace furnace{.name = "generated",
+                         .solid_density = solid_density,
+                         .packing_limit = field::packing_limit,
+                         .outlet_low_m = height,
+                         .held_out = {"load_*", "rep*"},
+                         .repeats = {"rep*"}};
+  for (const auto& input : inputs) {
+    if (input.role != Role::gas_inlet) continue;
+    const double at = input.height * height;
+    furnace.openings.push_back({.inputs = input.info.name, .low_m = at, .high_m = at});
+  }
+  furnace.mirrors = {{.name = "left-right",
+                      .axis = 'y',
+                      .swap = {{"*_left", "*_right"}},
+                      .complement = {"return_left_fraction"}},
+                     {.name = "front-rear",
+                      .axis = 'x',
+                      .swap = {{"secondary_front_*", "secondary_rear_*"},
+                               {"fuel_front_*", "fuel_rear_*"},
+                               {"return_front_*", "return_rear_*"}}}};
+  return furnace;
 }
 
 std::vector<DesignPoint> design_at(const std::vector<double>& loads,

@@ -6,6 +6,7 @@
 
 #include "elrom/base/random.hpp"
 #include "elrom/field/boundary_conditions.hpp"
+#include "elrom/field/furnace.hpp"
 
 namespace elrom::ingest {
 
@@ -24,6 +25,10 @@ struct GeneratorInput {
 
 /// The first n of the shipped cases' inputs; beyond 26, auxiliary inlets at places drawn from the seed.
 [[nodiscard]] std::vector<GeneratorInput> generator_inputs(std::size_t n, base::Seed seed);
+
+/// The furnace that cases of these inputs are made of: an opening a gas inlet, the outlet at the top, mirrors
+/// and names of held-out cases as in the shipped one.
+[[nodiscard]] field::Furnace generator_furnace(const std::vector<GeneratorInput>& inputs);
 
 /// One case's place in the design.
 struct DesignPoint {

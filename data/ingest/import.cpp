@@ -69,20 +69,63 @@ class Exchange {
 
 std::vector<field::FieldInfo> fields_of_new_store(const ImportOptions& options, const CfdCase& first) {
   if (options.fields.empty()) return {field::standard_fields().begin(), field::standard_fields().end()};
-  std::vector<std::string> names;
-  for (const auto& f : first.fields) names.push_back(f.name);
-  std::vector<field::FieldInfo> fields;
-  for (const auto& name : options.fields) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
-      throw InputError({.what = "missing field '" + name + "'",
-                        .where = first.record.source,
-                        .advice = base::name_advice(name, names)});
-    }
-    fields.push_back(first.fields[static_cast<std::size_t>(found - names.begin())]);
-  }
-  return fields;
+  return field::choose_fields<InputError>(first.fields, options.fields, first.record.source);
 }
+
+// The furnace description that the user names, or that lies beside the mesh.
+class FurnaceFile {
+ public:
+  FurnaceFile(const ImportOptions& options, Log& log) : is_named_(!options.furnace.empty()), log_(log) {
+    path_ = options.furnace;
+    if (!is_named_ && !options.mesh.empty()) {
+      path_ = options.mesh;
+      path_.replace_extension(".toml");
+      if (!std::filesystem::exists(path_)) path_.clear();
+    }
+    if (!path_.empty()) furnace_ = field::read_furnace(path_);
+  }
+
+  /// What a store of these cases is to carry from now on; nothing: what it has.
+  [[nodiscard]] std::optional<field::Furnace> use(const field::InputSchema& schema,
+                                                  const std::optional<field::Furnace>& in_store) const {
+    if (!furnace_) {
+      if (!in_store)
+        log_.info(
+            "no furnace description, so no gas balance, mirrors or held-out cases; --furnace names one");
+      return std::nullopt;
+    }
+    if (in_store && field::to_toml(*in_store) == field::to_toml(*furnace_)) return std::nullopt;
+    if (in_store && !is_named_) {
+      log_.warning("the store keeps its furnace description, which differs from " + path_.string() +
+                   "; --furnace would replace it");
+      return std::nullopt;
+    }
+    return fits(schema) ? furnace_ : std::nullopt;
+  }
+
+ private:
+  // One that nobody named may be of other cases on the same mesh.
+  [[nodiscard]] bool fits(const field::InputSchema& schema) const {
+    try {
+      field::expect_fits(*furnace_, schema, path_.string());
+    } catch (const InputError& error) {
+      if (is_named_) throw;
+      log_.warning(std::string("furnace description not used: ") + error.what());
+      return false;
+    }
+    log_.info("furnace description: " + path_.string());
+    const auto flows = field::flows_without_opening(*furnace_, schema);
+    if (!flows.empty())
+      log_.warning("no opening of the furnace for " + base::join(flows, ", ") +
+                   ": no balance of its gas flows counts them");
+    return true;
+  }
+
+  bool is_named_;
+  Log& log_;
+  std::filesystem::path path_;
+  std::optional<field::Furnace> furnace_;
+};
 
 class Import {
  public:
@@ -91,14 +134,15 @@ class Import {
         log_(log),
         stop_(stop),
         mesh_(mesh_of(options)),
-        exchange_(mesh_, options.n_threads, stop) {
+        exchange_(mesh_, options.n_threads, stop),
+        furnace_file_(options, log) {
     if (!options.cases.empty()) table_ = read_cases_table(options.cases);
     if (!std::filesystem::exists(options.store)) return;
     const auto store = field::SnapshotStore::open(options.store);
     schema_ = store.schema();
     summary_.fields = store.fields();
     summary_.n_cases = store.n_cases();
-    open_writer();
+    open_writer(store.furnace());
   }
 
   ImportSummary run() {
@@ -110,14 +154,20 @@ class Import {
                      .total = static_cast<std::int64_t>(options_.files.size()),
                      .unit = "cases"});
     }
-    if (options_.confirm) options_.confirm();
-    if (writer_ && summary_.n_added > 0) writer_->commit();
-    for (auto& error : summary_.mean_error) error /= static_cast<double>(summary_.n_added);
-    summary_.n_cases += summary_.n_added;
+    if (options_.leave_out) leave_out(options_.leave_out());
+    if (writer_ && (!taken_.empty() || furnace_)) writer_->commit();
+    sum_up();
     return summary_;
   }
 
  private:
+  /// What the summary needs of a case that entered the store.
+  struct Taken {
+    std::string name;
+    std::vector<double> error;
+    std::size_t n_outside, n_cells;
+  };
+
   static field::Mesh mesh_of(const ImportOptions& options) {
     if (!options.mesh.empty()) return field::read_mesh(options.mesh);
     if (std::filesystem::exists(options.store)) return field::SnapshotStore::open(options.store).mesh();
@@ -126,16 +176,15 @@ class Import {
                       .advice = "give it by --mesh, or make one by 'elrom-data mesh'"});
   }
 
-  void open_writer() {
-    writer_.emplace(options_.store, mesh_, schema_, summary_.fields);
-    summary_.mean_error.assign(summary_.fields.size(), 0);
-    summary_.largest_error.assign(summary_.fields.size(), 0);
+  void open_writer(const std::optional<field::Furnace>& in_store) {
+    furnace_ = furnace_file_.use(schema_, in_store);
+    if (furnace_) summary_.fields = furnace_->limited(std::move(summary_.fields));
+    writer_.emplace(options_.store, mesh_, schema_, summary_.fields, furnace_);
   }
 
   void take(const std::filesystem::path& file) {
     auto one = read_case(file);
     if (table_) complete_inputs(one, *table_);
-    if (options_.accept && !options_.accept(one)) return;
     if (!writer_) {
       if (one.schema.size() == 0) {
         throw InputError({.what = "no boundary conditions",
@@ -145,12 +194,13 @@ class Import {
       schema_ = one.schema;
       summary_.fields = fields_of_new_store(options_, one);
       (void)conform_fields(one, summary_.fields);  // a first case that lacks a field begins no file
-      open_writer();
+      open_writer(std::nullopt);
     }
     const auto snapshot = resample(one);
     if (options_.watch) options_.watch(snapshot, mesh_, schema_, summary_.fields);
     writer_->add(snapshot);
-    ++summary_.n_added;
+    taken_.push_back({snapshot.record.inputs.name, snapshot.record.resampling_error,
+                      exchange_.there().n_outside(), exchange_.there().n_target()});
   }
 
   field::Snapshot resample(const CfdCase& one) {
@@ -160,14 +210,28 @@ class Import {
     exchange_.use_mesh_of(one);
     snapshot.fields = exchange_.there().apply(values);
     snapshot.record.resampling_error = round_trip_error(values, exchange_.back().apply(snapshot.fields));
-    for (std::size_t f = 0; f < summary_.fields.size(); ++f) {
-      const double error = snapshot.record.resampling_error[f];
-      summary_.mean_error[f] += error;
-      summary_.largest_error[f] = std::max(summary_.largest_error[f], error);
-    }
-    summary_.n_outside = exchange_.there().n_outside();
-    summary_.n_cells = exchange_.there().n_target();
     return snapshot;
+  }
+
+  void leave_out(const std::set<std::string>& names) {
+    if (names.empty()) return;
+    writer_->leave_out(names);
+    std::erase_if(taken_, [&](const Taken& one) { return names.contains(one.name); });
+  }
+
+  void sum_up() {
+    summary_.n_added = taken_.size();
+    summary_.n_cases += taken_.size();
+    summary_.mean_error.assign(summary_.fields.size(), 0);
+    summary_.largest_error.assign(summary_.fields.size(), 0);
+    for (const auto& one : taken_) {
+      for (std::size_t f = 0; f < summary_.fields.size(); ++f) {
+        summary_.mean_error[f] += one.error[f] / static_cast<double>(taken_.size());
+        summary_.largest_error[f] = std::max(summary_.largest_error[f], one.error[f]);
+      }
+      summary_.n_outside = one.n_outside;
+      summary_.n_cells = one.n_cells;
+    }
   }
 
   const ImportOptions& options_;
@@ -175,9 +239,12 @@ class Import {
   std::stop_token stop_;
   field::Mesh mesh_;
   Exchange exchange_;
+  FurnaceFile furnace_file_;
   std::optional<CasesTable> table_;
   field::InputSchema schema_;
+  std::optional<field::Furnace> furnace_;  // that the store did not carry before
   std::optional<field::SnapshotWriter> writer_;
+  std::vector<Taken> taken_;
   ImportSummary summary_;
 };
 

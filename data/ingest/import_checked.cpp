@@ -1,18 +1,15 @@
 #include "elrom/ingest/import_checked.hpp"
 
-#include <map>
 #include <set>
 
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
-#include "elrom/base/text.hpp"
 
 namespace elrom::ingest {
 namespace {
 
-/// Thrown through import_cases() to leave the store alone and begin again without some cases.
-struct WithoutThem {
-  std::set<std::string> names;
-};
+constexpr base::EnumNames<Policy, 3> policies{
+    "policy", {{Policy::refuse, "refuse"}, {Policy::drop, "drop"}, {Policy::keep, "keep"}}};
 
 class Gate {
  public:
@@ -26,31 +23,42 @@ class Gate {
     checker_.add(view_of(snapshot.record, snapshot.fields, mesh, schema, fields));
   }
 
-  /// Judges the new cases. @throws InputError, WithoutThem
-  void confirm() const {
-    const auto findings = checker_.findings();
-    WithoutThem dropped;
-    for (std::size_t i = n_old_; i < checker_.cases().size(); ++i) {
-      const auto& name = checker_.cases()[i].name;
-      for (const auto& finding : findings_on(findings, name)) {
-        if (finding.severity == Severity::wrong)
-          settle(finding, dropped);
-        else
-          log_.warning(line_of(finding));
+  /// Judges the new cases: names of those that are not to stay. @throws InputError
+  std::set<std::string> judge() {
+    std::set<std::string> dropped;
+    // Without the dropped cases the others look different; a round that drops nothing ends it.
+    for (;;) {
+      const auto findings = on_new_cases();
+      const auto n_before = dropped.size();
+      for (const auto& finding : findings)
+        if (finding.severity == Severity::wrong) settle(finding, dropped);
+      if (dropped.size() > n_before) {
+        checker_.forget(dropped);
+        continue;
       }
+      for (const auto& finding : findings)
+        if (finding.severity != Severity::wrong) log_.warning(line_of(finding));
+      return dropped;
     }
-    if (!dropped.names.empty()) throw dropped;
   }
 
  private:
-  void settle(const Finding& finding, WithoutThem& dropped) const {
+  [[nodiscard]] std::vector<Finding> on_new_cases() const {
+    const auto all = checker_.findings();
+    std::vector<Finding> found;
+    for (std::size_t i = n_old_; i < checker_.cases().size(); ++i)
+      for (auto& finding : findings_on(all, checker_.cases()[i].name)) found.push_back(std::move(finding));
+    return found;
+  }
+
+  void settle(const Finding& finding, std::set<std::string>& dropped) const {
     if (policy_ == Policy::refuse) {
       throw InputError(
           Problem{.what = line_of(finding),
                   .advice = "correct the case, or say --on-suspicious drop or keep; nothing was added"});
     }
     log_.warning(line_of(finding) + (policy_ == Policy::drop ? "; left out" : "; kept as asked"));
-    if (policy_ == Policy::drop) dropped.names.insert(finding.case_name);
+    if (policy_ == Policy::drop) dropped.insert(finding.case_name);
   }
 
   Policy policy_;
@@ -61,37 +69,17 @@ class Gate {
 
 }  // namespace
 
-Policy policy_of(std::string_view name) {
-  const std::map<std::string, Policy> known{
-      {"refuse", Policy::refuse}, {"drop", Policy::drop}, {"keep", Policy::keep}};
-  const auto found = known.find(std::string(name));
-  if (found != known.end()) return found->second;
-  throw UsageError({.what = "unknown policy '" + std::string(name) + "'",
-                    .advice = base::name_advice(name, {"refuse", "drop", "keep"})});
-}
+Policy policy_of(std::string_view name) { return policies.value<UsageError>(name); }
 
 ImportSummary import_checked(const ImportOptions& options, Policy policy, Log& log,
                              const std::stop_token& stop) {
-  std::set<std::string> left_out;
-  // Without the dropped cases the others look different; a round that drops nothing ends it.
-  for (;;) {
-    Gate gate(options, policy, log);
-    auto checked = options;
-    checked.accept = [&](const CfdCase& one) {
-      if (left_out.contains(one.record.inputs.name)) return false;
-      return !options.accept || options.accept(one);
-    };
-    checked.watch = [&](const field::Snapshot& snapshot, const field::Mesh& mesh,
-                        const field::InputSchema& schema, std::span<const field::FieldInfo> fields) {
-      gate.add(snapshot, mesh, schema, fields);
-    };
-    checked.confirm = [&] { gate.confirm(); };
-    try {
-      return import_cases(checked, log, stop);
-    } catch (const WithoutThem& dropped) {
-      left_out.insert(dropped.names.begin(), dropped.names.end());
-    }
-  }
+  Gate gate(options, policy, log);
+  auto checked = options;
+  checked.watch = [&](const field::Snapshot& snapshot, const field::Mesh& mesh,
+                      const field::InputSchema& schema,
+                      std::span<const field::FieldInfo> fields) { gate.add(snapshot, mesh, schema, fields); };
+  checked.leave_out = [&] { return gate.judge(); };
+  return import_cases(checked, log, stop);
 }
 
 }  // namespace elrom::ingest

@@ -32,7 +32,7 @@ std::string kind_of(const std::filesystem::path& path) {
 
 bool is_snapshot_store(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path) || !is_hdf5(path)) return false;
-  return kind_of(path) == "elrom-snapshots";
+  return kind_of(path) == io::kinds::snapshots.name;
 }
 
 CfdCase read_case(const std::filesystem::path& path) {

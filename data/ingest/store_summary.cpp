@@ -60,6 +60,26 @@ Json case_entry(const field::SnapshotStore& store, std::size_t i) {
   return entry;
 }
 
+/// Null: nobody described it.
+Json describe_furnace(const std::optional<field::Furnace>& furnace) {
+  if (!furnace) return nullptr;
+  Json entry{{"name", furnace->name},
+             {"solid_density_kg_per_m3", furnace->solid_density},
+             {"packing_limit", furnace->packing_limit},
+             {"outlet_low_m", number_or_null(furnace->outlet_low_m)},
+             {"held_out", furnace->held_out},
+             {"repeats", furnace->repeats}};
+  entry["openings"] = Json::array();
+  for (const auto& opening : furnace->openings)
+    entry["openings"].push_back({{"inputs", opening.inputs},
+                                 {"kind", opening.kind},
+                                 {"low_m", opening.low_m},
+                                 {"high_m", opening.high_m}});
+  entry["mirrors"] = Json::array();
+  for (const auto& mirror : furnace->mirrors) entry["mirrors"].push_back(mirror.name);
+  return entry;
+}
+
 }  // namespace
 
 Json describe_mesh(const field::Mesh& mesh) {
@@ -79,6 +99,7 @@ Json describe_store(const field::SnapshotStore& store) {
               {"n_cases", store.n_cases()},
               {"load", load_range(store).json()}};
   result["mesh"] = describe_mesh(store.mesh());
+  result["furnace"] = describe_furnace(store.furnace());
   result["inputs"] = Json::array();
   const auto inputs = store.inputs(cases);
   for (std::size_t i = 0; i < store.schema().size(); ++i) {
@@ -130,6 +151,7 @@ Json describe_case(const CfdCase& one) {
 Json describe_bundle(const model::BundleReader& bundle) {
   const auto& info = bundle.info();
   Json result{{"kind", "bundle"}, {"method", info.method}, {"mesh", describe_mesh(bundle.mesh())}};
+  result["furnace"] = describe_furnace(bundle.furnace());
   result["inputs"] = Json::array();
   for (const auto& input : info.schema.inputs()) {
     result["inputs"].push_back({{"name", input.name}, {"unit", input.display_unit}});

@@ -50,12 +50,30 @@ std::string value_table(const Json& inputs) {
   return text;
 }
 
+std::string furnace_words(const Json& furnace) {
+  if (furnace.is_null()) return "furnace: not described (elrom-data import --furnace)\n";
+  const auto list = [](const Json& items) {
+    return items.empty() ? std::string("none") : base::join(items.get<std::vector<std::string>>(), ", ");
+  };
+  std::string text = fmt::format(
+      "furnace: {}; solids of {} kg/m3, packing limit {}; outlet from {} m\n"
+      "  mirrors {}; held out {}; repeated runs {}\n",
+      furnace["name"].get<std::string>(), shown(furnace["solid_density_kg_per_m3"]),
+      shown(furnace["packing_limit"]), shown(furnace["outlet_low_m"]), list(furnace["mirrors"]),
+      list(furnace["held_out"]), list(furnace["repeats"]));
+  for (const auto& opening : furnace["openings"])
+    text +=
+        fmt::format("  {:<28}{:<16}{} to {} m\n", opening["inputs"].get<std::string>(),
+                    opening["kind"].get<std::string>(), shown(opening["low_m"]), shown(opening["high_m"]));
+  return text;
+}
+
 std::string store_words(const Json& store) {
   const auto n = store["n_cases"].get<std::size_t>();
   std::string text =
       fmt::format("snapshot store {}: {} {}, loads {} to {}\nmesh: ", store["path"].get<std::string>(), n,
                   n == 1 ? "case" : "cases", percent(store["load"]["min"]), percent(store["load"]["max"]));
-  text += mesh_words(store["mesh"]);
+  text += mesh_words(store["mesh"]) + furnace_words(store["furnace"]);
   text += range_table(store["inputs"], "boundary condition") + range_table(store["fields"], "field");
   text += fmt::format("\n{:<30}{:>8}{:>12}  {}\n", "case", "load", "averaged", "from");
   for (const auto& one : store["cases"]) {
@@ -82,7 +100,7 @@ std::string bundle_words(const Json& bundle) {
   std::string text =
       fmt::format("model of method '{}', trained on {} cases\nmesh: ", bundle["method"].get<std::string>(),
                   bundle["cases"].size());
-  text += mesh_words(bundle["mesh"]);
+  text += mesh_words(bundle["mesh"]) + furnace_words(bundle["furnace"]);
   text += fmt::format("\n{:<30}{:<8}{}\n", "field", "unit", "predicted by");
   for (const auto& field : bundle["fields"]) {
     text += fmt::format("{:<30}{:<8}{}\n", field["name"].get<std::string>(), field["unit"].get<std::string>(),

@@ -54,6 +54,12 @@ void add_import(CLI::App& program, Work& chosen) {
       ->add_option("--cases", options->cases,
                    "Table of boundary conditions, for formats that carry none; cases are found by name")
       ->type_name("CASES.csv");
+  command
+      ->add_option(
+          "--furnace", options->furnace,
+          "Furnace description that the store is to carry: openings, mirrors, limits, held-out cases "
+          "[default: MESH.toml beside the mesh, where it is there]; on an existing store also without FILE")
+      ->type_name("FURNACE.toml");
   base::comma_list(
       command->add_option("--fields", options->fields,
                           "Fields of a new store, separated by commas [default: the nine standard fields]"))
@@ -68,9 +74,11 @@ void add_import(CLI::App& program, Work& chosen) {
                    "refuse everything, drop that case, or keep it with a warning")
       ->capture_default_str()
       ->check(CLI::IsMember({"refuse", "drop", "keep"}));
-  command->add_option("FILE", options->files, "CFD results, one a case")->required()->type_name("FILE...");
-  command->callback(
-      [options, policy, &chosen] { chosen = [options, policy] { return run_import(*options, *policy); }; });
+  command->add_option("FILE", options->files, "CFD results, one a case")->type_name("FILE...");
+  command->callback([options, policy, &chosen] {
+    if (options->files.empty() && options->furnace.empty()) throw CLI::RequiredError("FILE");
+    chosen = [options, policy] { return run_import(*options, *policy); };
+  });
 }
 
 }  // namespace elrom::programs

@@ -16,9 +16,9 @@ nlohmann::ordered_json describe(const std::filesystem::path& path) {
   if (ending == ".elrom") return ingest::describe_bundle(model::BundleReader(path));
   if (ending == ".h5" || ending == ".hdf5" || ending == ".hdf") {
     const auto kind = ingest::kind_of(path);
-    if (kind == "elrom-snapshots") return ingest::describe_store(field::SnapshotStore::open(path));
-    if (kind == "elrom-mesh") return ingest::describe_mesh(field::read_mesh(path));
-    if (kind == "elrom-prediction") return ingest::describe_prediction(path);
+    if (kind == io::kinds::snapshots.name) return ingest::describe_store(field::SnapshotStore::open(path));
+    if (kind == io::kinds::mesh.name) return ingest::describe_mesh(field::read_mesh(path));
+    if (kind == io::kinds::prediction.name) return ingest::describe_prediction(path);
     if (!kind.empty())
       throw InputError({.what = "nothing to inspect",
                         .where = path.string(),

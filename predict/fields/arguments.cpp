@@ -1,10 +1,10 @@
 #include "elrom/fields/arguments.hpp"
 
 #include <CLI/CLI.hpp>
-#include <map>
 
 #include "elrom/base/comma_list.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/fields/ranges.hpp"
 
@@ -46,12 +46,17 @@ Exit status: 0 done, 2 wrong command line, 3 wrong file or input, 4 outside the 
 /// The text between a raw string's first and last line break, so that it can begin on a line of its own.
 std::string lines_of(std::string_view raw) { return std::string(raw.substr(1, raw.size() - 2)); }
 
-const std::map<std::string, Format> format_names{
-    {"hdf", Format::hdf}, {"csv", Format::csv}, {"txt", Format::txt}, {"ip", Format::ip}};
+std::vector<std::string> format_names(bool text_only) {
+  std::vector<std::string> names;
+  for (const auto& info : formats())
+    if (info.write != nullptr || !text_only) names.emplace_back(info.name);
+  return names;
+}
 
 /// What is read as text, and understood when all of the command line is there.
 struct Texts {
   std::string planes, region, builds = "mean";
+  std::vector<std::string> formats;
 };
 
 void add_input_options(CLI::App& app, Arguments& arguments) {
@@ -81,14 +86,13 @@ void add_selection_options(CLI::App& app, Arguments& arguments, Texts& texts) {
   app.add_flag("--profile", arguments.profile, "only the plane averages (weighted by volume)");
 }
 
-void add_output_options(CLI::App& app, Arguments& arguments) {
+void add_output_options(CLI::App& app, Arguments& arguments, Texts& texts) {
   app.add_option("--output", arguments.output,
                  "folder to write to (made when missing), or - for standard output")
       ->capture_default_str();
-  base::comma_list(
-      app.add_option("--format", arguments.formats,
-                     "hdf, csv, txt, ip; several with commas; default: hdf, with --output -: csv"))
-      ->transform(CLI::CheckedTransformer(format_names).description(""))
+  base::comma_list(app.add_option("--format", texts.formats,
+                                  base::join(format_names(false), ", ") +
+                                      "; several with commas; default: hdf, with --output -: csv"))
       ->type_name("FORMAT");
   app.add_flag("--strict", arguments.strict,
                "do not write cases that are outside the trained range; exit status 4");
@@ -125,14 +129,12 @@ void check_together(Arguments& arguments) {
   }
   if (arguments.cases.empty() && !arguments.case_patterns.empty())
     throw UsageError("--case chooses from --cases FILE");
-  const bool binary = arguments.formats != std::vector{Format::csv} &&
-                      arguments.formats != std::vector{Format::txt} &&
-                      arguments.formats != std::vector{Format::ip};
-  if (arguments.to_standard_output() && binary) {
-    throw UsageError("--output - takes one text format: --format csv, txt or ip");
-  }
-  if (arguments.writes(Format::ip) && arguments.profile)
-    throw UsageError("a Fluent interpolation file holds cells; --profile has none");
+  const bool one_text = arguments.formats.size() == 1 && info_of(arguments.formats[0]).write != nullptr;
+  if (arguments.to_standard_output() && !one_text)
+    throw UsageError("--output - takes one text format: --format " + base::join(format_names(true), ", "));
+  for (const auto format : arguments.formats)
+    if (arguments.profile && !info_of(format).profiles)
+      throw UsageError(std::string("--format ") + info_of(format).name + " holds cells; --profile has none");
 }
 
 }  // namespace
@@ -147,7 +149,7 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   app.get_formatter()->column_width(24);
   add_input_options(app, arguments);
   add_selection_options(app, arguments, texts);
-  add_output_options(app, arguments);
+  add_output_options(app, arguments, texts);
   add_physics_options(app, arguments);
   add_run_options(app, arguments, no_verify, no_sync);
   try {
@@ -159,6 +161,7 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   }
   if (!texts.planes.empty()) arguments.planes = parse_planes(texts.planes);
   if (!texts.region.empty()) arguments.region = parse_box(texts.region);
+  for (const auto& name : texts.formats) arguments.formats.push_back(format_named(name).format);
   arguments.best_build_only = texts.builds == "best";
   arguments.verify = !no_verify;
   arguments.sync = !no_sync;

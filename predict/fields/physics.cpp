@@ -49,11 +49,14 @@ void check_inputs(const Arguments& arguments, const model::BundleReader& bundle)
        .advice = "the bundle was trained without it, so that nothing says how much to conserve"});
 }
 
-std::vector<field::FieldInfo> chosen_fields(const Arguments& arguments, const model::BundleReader& bundle) {
-  std::vector<field::FieldInfo> chosen;
-  for (const auto& info : bundle.info().fields)
-    if (arguments.fields.empty() || contains(arguments.fields, info.name)) chosen.push_back(info);
-  return chosen;
+// Where gas enters and how dense solids are, nothing but the furnace says.
+field::Furnace furnace_of(const Arguments& arguments, const model::BundleReader& bundle) {
+  if (auto furnace = bundle.furnace()) return *std::move(furnace);
+  throw UsageError(
+      {.what = option_of(arguments) + " needs a furnace description",
+       .where = bundle.file().where(),
+       .found = "none",
+       .advice = "describe the furnace to the store (elrom-data import --furnace) and train again"});
 }
 
 std::string indented(const std::string& lines) {
@@ -78,9 +81,10 @@ Physics::Physics(const Arguments& arguments, const model::BundleReader& bundle, 
   check_cells(arguments, bundle, cells);
   check_fields(arguments, bundle);
   check_inputs(arguments, bundle);
+  settings_ = model::audit_settings(furnace_of(arguments, bundle));
   mesh_ = bundle.mesh();
   schema_ = bundle.info().schema;
-  fields_ = chosen_fields(arguments, bundle);
+  fields_ = field::keep_fields(bundle.info().fields, arguments.fields);
 }
 
 PhysicsResult Physics::apply(const field::CaseInputs& inputs, std::span<float> values) const {
@@ -88,11 +92,11 @@ PhysicsResult Physics::apply(const field::CaseInputs& inputs, std::span<float> v
       .mesh = mesh_, .schema = schema_, .inputs = inputs.values, .fields = fields_, .values = values};
   PhysicsResult result;
   try {
-    if (conserve_) result.change = model::conserve(view, values);
+    if (conserve_) result.change = model::conserve(view, values, {}, settings_);
   } catch (const NumericalError& error) {
     throw NumericalError("case " + inputs.name + ": " + error.what());
   }
-  if (audit_) result.audit = model::audit(view);
+  if (audit_) result.audit = model::audit(view, settings_);
   return result;
 }
 

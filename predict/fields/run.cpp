@@ -88,12 +88,10 @@ model::Prediction CaseRunner::compute(const field::CaseInputs& inputs, const mod
 }
 
 void CaseRunner::write(Format format, const model::Prediction& prediction, HdfFile& hdf, Desk& desk) const {
-  if (format == Format::hdf) {
-    hdf.finish(prediction);
-    return;
-  }
+  const auto write_text = info_of(format).write;
+  if (write_text == nullptr) return hdf.finish(prediction);
   desk.text.clear();
-  write_text(format, opened_.frame, *opened_.coordinates, prediction, desk.text);
+  write_text(opened_.frame, *opened_.coordinates, prediction, desk.text);
   if (arguments_.to_standard_output()) {
     write_to_standard_output(desk.text);
   } else {

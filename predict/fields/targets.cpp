@@ -7,20 +7,6 @@
 namespace elrom::fields {
 namespace {
 
-const char* extension_of(Format format) {
-  switch (format) {
-    case Format::hdf:
-      return ".hdf";
-    case Format::csv:
-      return ".csv";
-    case Format::txt:
-      return ".txt";
-    case Format::ip:
-      return ".ip";
-  }
-  return "";
-}
-
 void write_all(std::FILE* stream, const std::string& text, const std::string& where) {
   const bool written =
       std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
@@ -43,7 +29,7 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
 }  // namespace
 
 std::filesystem::path Targets::path(Format format, const field::CaseInputs& inputs) const {
-  return folder_ / (inputs.name + extension_of(format));
+  return folder_ / (inputs.name + "." + info_of(format).name);
 }
 
 std::unique_ptr<base::AtomicFile> Targets::begin(Format format, const field::CaseInputs& inputs) const {

@@ -149,12 +149,4 @@ void write_fluent(const model::PredictionFrame& frame, const Coordinates& coordi
   }
 }
 
-void write_text(Format format, const model::PredictionFrame& frame, const Coordinates& coordinates,
-                const model::Prediction& prediction, std::string& text) {
-  check(format != Format::hdf, "text export: a text format");
-  if (format == Format::csv) write_csv(frame, coordinates, prediction, text);
-  if (format == Format::txt) write_sfw3d(frame, coordinates, prediction, text);
-  if (format == Format::ip) write_fluent(frame, coordinates, prediction, text);
-}
-
 }  // namespace elrom::fields

@@ -13,9 +13,9 @@
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/fields/formats.hpp"
 #include "elrom/fields/physics.hpp"
 #include "elrom/fields/ranges.hpp"
-#include "elrom/fields/text_writer.hpp"
 #include "elrom/model/prediction_file.hpp"
 
 namespace py = pybind11;
@@ -222,16 +222,12 @@ class Predictor : public std::enable_shared_from_this<Predictor> {
 
 void write(const Predicted& predicted, const Path& path, const std::string& format) {
   const auto& frame = predicted.owner->frame();
-  if (format == "hdf") return model::write_prediction(frame, predicted.view(), path);
-  const std::map<std::string, fields::Format> formats{
-      {"csv", fields::Format::csv}, {"txt", fields::Format::txt}, {"ip", fields::Format::ip}};
-  const auto known = formats.find(format);
-  if (known == formats.end())
-    throw UsageError({.what = "no format '" + format + "'", .expected = "hdf, csv, txt or ip"});
-  if (known->second == fields::Format::ip && frame.extent.average())
-    throw UsageError("a Fluent interpolation file holds cells; a profile has none");
+  const auto& info = fields::format_named(format);
+  if (info.write == nullptr) return model::write_prediction(frame, predicted.view(), path);
+  if (!info.profiles && frame.extent.average())
+    throw UsageError(std::string("format ") + info.name + " holds cells; a profile has none");
   std::string text;
-  fields::write_text(known->second, frame, predicted.owner->coordinates(), predicted.view(), text);
+  info.write(frame, predicted.owner->coordinates(), predicted.view(), text);
   base::write_text(path, text);
 }
 

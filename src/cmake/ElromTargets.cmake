@@ -32,7 +32,7 @@ endfunction()
 # The standard and third-party headers that nearly every source reads, parsed once a target. Sources still include what they
 # use: the debug preset builds without.
 set(ELROM_COMMON_HEADERS <algorithm> <filesystem> <functional> <map> <memory> <span> <string> <vector>
-                         <Eigen/Core> <nlohmann/json.hpp>)
+                         <Eigen/Core> ${PROJECT_SOURCE_DIR}/src/io/json_instances.hpp)
 function(elrom_precompile target)
   target_precompile_headers(${target} PRIVATE ${ARGN})
   target_compile_options(${target} PRIVATE -fpch-preprocess)  # lets ccache see through the precompiled header
@@ -53,7 +53,7 @@ function(elrom_library name)
   elrom_compile_options(elrom-${name})
   # One header parsed for all, core's; LibTorch's has its own.
   if(name STREQUAL torch)
-    elrom_precompile(elrom-torch <torch/torch.h>)
+    elrom_precompile(elrom-torch <torch/torch.h> ${PROJECT_SOURCE_DIR}/src/io/json_instances.hpp)
   elseif(name STREQUAL core)
     elrom_precompile(elrom-core ${ELROM_COMMON_HEADERS})
   else()
@@ -62,6 +62,33 @@ function(elrom_library name)
   endif()
   install(TARGETS elrom-${name} EXPORT elrom-${name}-targets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
   install(EXPORT elrom-${name}-targets NAMESPACE elrom:: DESTINATION lib/cmake/elrom)
+endfunction()
+
+# The optimiser is the larger half of the compile time of tests and of what reads command lines, and none of them computes.
+# A precompiled header brings the level it was made with along, so each level has its own.
+set(ELROM_DRIVER_OPTIMISATION $<$<CONFIG:Release>:-O1>)
+
+# elrom_driver(target [LIBTORCH]) -> compiled like all programs: little optimised, with the header they share, which knows CLI11
+# and fmt. LIBTORCH: the sources include it; they are compiled as elrom::torch is, whose header they take.
+function(elrom_driver target)
+  cmake_parse_arguments(ARG "LIBTORCH" "" "" ${ARGN})
+  elrom_compile_options(${target})
+  if(ARG_LIBTORCH)
+    target_precompile_headers(${target} REUSE_FROM elrom-torch)
+    target_compile_options(${target} PRIVATE -fPIC -fpch-preprocess)
+    return()
+  endif()
+  if(NOT TARGET elrom-driver-headers)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/driver_headers.cpp CONTENT "")
+    add_library(elrom-driver-headers OBJECT ${PROJECT_BINARY_DIR}/driver_headers.cpp)
+    target_link_libraries(elrom-driver-headers PRIVATE elrom::core CLI11::CLI11 fmt::fmt)
+    elrom_compile_options(elrom-driver-headers)
+    target_compile_options(elrom-driver-headers PRIVATE ${ELROM_DRIVER_OPTIMISATION})
+    elrom_precompile(elrom-driver-headers ${ELROM_COMMON_HEADERS} <CLI/CLI.hpp> <fmt/format.h>)
+  endif()
+  target_link_libraries(${target} PRIVATE fmt::fmt)
+  target_precompile_headers(${target} REUSE_FROM elrom-driver-headers)
+  target_compile_options(${target} PRIVATE ${ELROM_DRIVER_OPTIMISATION} -fpch-preprocess)
 endfunction()
 
 # elrom_program(elrom-xyz SOURCES ... LINKS ...) -> <build>/bin/elrom-xyz, installed to bin.
@@ -74,13 +101,11 @@ function(elrom_program name)
   endif()
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_LINKS})
-  elrom_compile_options(${target})
+  elrom_driver(${target})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${target} RUNTIME DESTINATION bin)
 endfunction()
 
-# The optimiser is the larger half of a test's compile time, and no test is about speed.
-set(ELROM_TEST_OPTIMISATION $<$<CONFIG:Release>:-O1>)
 function(elrom_test_options target)
   elrom_compile_options(${target})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
@@ -91,7 +116,7 @@ endfunction()
 # a test case, <component>/<Suite>.<Case>. The component's internal headers can be included.
 # Slow or statistical work belongs into tests/benchmark, which CTest does not run.
 function(elrom_tests component)
-  cmake_parse_arguments(ARG "LIBTORCH" "TIMEOUT;INTERNAL" "SOURCES;LINKS;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(ARG "LIBTORCH" "TIMEOUT;INTERNAL" "SOURCES;LINKS" ${ARGN})
   set(name test-${component})
   if(NOT ARG_SOURCES)
     file(GLOB ARG_SOURCES CONFIGURE_DEPENDS *_test.cpp)
@@ -109,11 +134,12 @@ function(elrom_tests component)
     target_compile_options(${name} PRIVATE -fPIC -fpch-preprocess)
   else()
     target_precompile_headers(${name} REUSE_FROM test-headers)
-    target_compile_options(${name} PRIVATE ${ELROM_TEST_OPTIMISATION} -fpch-preprocess)
+    target_compile_options(${name} PRIVATE ${ELROM_DRIVER_OPTIMISATION} -fpch-preprocess)
   endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  gtest_discover_tests(${name} TEST_PREFIX ${component}/ DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT} ${ARG_PROPERTIES})
+  gtest_discover_tests(${name} TEST_PREFIX ${component}/ DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
+                       PROPERTIES TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -1,20 +1,56 @@
 #include "elrom/field/case_set.hpp"
 
-#include "elrom/base/digest.hpp"
+#include "elrom/base/members.hpp"
 
 namespace elrom::field {
+namespace {
 
-std::string data_digest(const FieldData& data, std::span<const std::size_t> cases) {
+template <class Row>
+auto span_of(const Row& row) {
+  return std::span(row.data(), static_cast<std::size_t>(row.size()));
+}
+
+}  // namespace
+
+// Neither compiles when there is another member.
+std::string CaseSet::key() const {
+  const auto& [own_mesh, own_schema, own_names, own_loads, own_inputs, own_mirrors] = *this;
+  return base::digest_of_members(own_mesh, own_schema.inputs(), own_names, own_loads, own_inputs,
+                                 own_mirrors);
+}
+
+std::string FieldData::key() const {
+  const auto& [own_cases, own_info, own_values] = *this;
+  return base::digest_of_members(*own_cases, own_info, own_values);
+}
+
+FieldRows::FieldRows(const FieldData& data, std::span<const std::size_t> rows, bool with_mirrors)
+    : data_(data), rows_(rows.begin(), rows.end()), with_mirrors_(with_mirrors) {}
+
+const std::vector<Mirror>& FieldRows::mirrors() const {
+  static const std::vector<Mirror> none;
+  return with_mirrors_ ? data_.cases->mirrors : none;
+}
+
+std::span<const double> FieldRows::inputs(std::size_t i) const {
+  return span_of(data_.cases->inputs.row(static_cast<Eigen::Index>(rows_[i])));
+}
+
+std::span<const float> FieldRows::values(std::size_t i) const {
+  return span_of(data_.values.row(static_cast<Eigen::Index>(rows_[i])));
+}
+
+std::string FieldRows::key() const {
   base::Sha256 digest;
-  digest.add(data.info.name).add(data.cases->mesh.digest());
-  for (const auto& input : data.cases->schema.inputs()) digest.add(input.name);
-  for (const auto row : cases) {
-    const auto i = static_cast<Eigen::Index>(row);
-    digest.add_value(data.cases->loads[row]);
-    digest.add(std::as_bytes(
-        std::span(data.cases->inputs.row(i).data(), static_cast<std::size_t>(data.cases->inputs.cols()))));
-    digest.add(
-        std::as_bytes(std::span(data.values.row(i).data(), static_cast<std::size_t>(data.values.cols()))));
+  base::add_members(digest, n_inputs());
+  base::add_members(digest, n_planes());
+  base::add_members(digest, n_columns());
+  base::add_members(digest, info());
+  base::add_members(digest, mirrors());
+  for (std::size_t i = 0; i < n_cases(); ++i) {
+    base::add_members(digest, load(i));
+    base::add_members(digest, inputs(i));
+    base::add_members(digest, values(i));
   }
   return digest.hex();
 }

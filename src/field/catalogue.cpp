@@ -1,6 +1,9 @@
 #include "elrom/field/catalogue.hpp"
 
 #include <algorithm>
+#include <iterator>
+
+#include "elrom/base/text.hpp"
 
 namespace elrom::field {
 
@@ -36,6 +39,24 @@ FieldInfo field_info(std::string_view name, std::string_view unit) {
       std::find_if(known.begin(), known.end(), [&](const FieldInfo& f) { return f.name == name; });
   if (found != known.end()) return *found;
   return {.name = std::string(name), .meaning = std::string(name), .unit = std::string(unit)};
+}
+
+Problem unknown_field(std::span<const FieldInfo> known, std::string_view name, const std::string& where) {
+  std::vector<std::string> names;
+  for (const auto& info : known) names.push_back(info.name);
+  return {.what = "unknown field '" + std::string(name) + "'",
+          .where = where,
+          .advice = base::name_advice(name, names)};
+}
+
+std::vector<FieldInfo> keep_fields(std::span<const FieldInfo> known, std::span<const std::string> names,
+                                   const std::string& where) {
+  const auto chosen = choose_fields(known, names, where);
+  std::vector<FieldInfo> kept;
+  std::ranges::copy_if(known, std::back_inserter(kept), [&](const FieldInfo& info) {
+    return std::ranges::find(chosen, info.name, &FieldInfo::name) != chosen.end();
+  });
+  return kept;
 }
 
 }  // namespace elrom::field

@@ -12,8 +12,6 @@ namespace elrom::field {
 
 namespace {
 
-constexpr FormatVersion mesh_format{1, 0};
-
 std::size_t size_attribute(const io::Hdf5Group& group, const std::string& name) {
   const double value = group.number(name);
   constexpr double most = 1e9;
@@ -90,7 +88,7 @@ void write_mesh(const io::Hdf5Group& group, const Mesh& mesh) {
 Mesh read_mesh(const std::filesystem::path& path) {
   const auto read = [&] {
     const auto file = io::Hdf5File::open(path);
-    io::check_kind(file, "elrom-mesh", mesh_format);
+    io::check_kind(file, io::kinds::mesh);
     return read_mesh(file.group("mesh"));
   };
   io::survive(path, "mesh", [&] { static_cast<void>(read()); });
@@ -100,7 +98,7 @@ Mesh read_mesh(const std::filesystem::path& path) {
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
   base::AtomicFile target(path);
   auto file = io::Hdf5File::create(target.temporary());
-  io::write_kind(file, "elrom-mesh", mesh_format);
+  io::write_kind(file, io::kinds::mesh);
   write_mesh(file.create_group("mesh"), mesh);
   file.close();
   target.commit();

@@ -91,6 +91,18 @@ std::vector<CaseRecord> read_cases(const io::Hdf5Group& root, std::size_t n_inpu
   return cases;
 }
 
+void write_furnace(const io::Hdf5Group& root, const Furnace& furnace) {
+  if (root.has("furnace")) root.remove("furnace");
+  root.write_texts("furnace", {to_toml(furnace)});
+}
+
+std::optional<Furnace> read_furnace(const io::Hdf5Group& root) {
+  if (!root.has("furnace")) return std::nullopt;
+  const auto dataset = root.dataset("furnace");
+  dataset.expect_shape({1});
+  return parse_furnace(dataset.read_texts().front(), dataset.where());
+}
+
 void create_fields(const io::Hdf5Group& root, const std::vector<FieldInfo>& fields, const Mesh& mesh) {
   const auto group = root.create_group("fields");
   // Level 1: the last digits of averaged fields are noise, which no level shrinks.

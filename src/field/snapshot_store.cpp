@@ -14,6 +14,7 @@ struct SnapshotStore::Impl {
   io::Hdf5File file;
   Mesh mesh;
   InputSchema schema;
+  std::optional<Furnace> furnace;
   std::vector<FieldInfo> fields;
   std::vector<CaseRecord> cases;
 };
@@ -35,11 +36,13 @@ SnapshotStore SnapshotStore::open(const std::filesystem::path& path) {
 
 SnapshotStore SnapshotStore::open_here(const std::filesystem::path& path) {
   auto file = io::Hdf5File::open(path);
-  io::check_kind(file, detail::store_kind, detail::store_format);
+  io::check_kind(file, io::kinds::snapshots);
   auto impl = std::make_unique<Impl>(Impl{.path = path, .file = std::move(file)});
   impl->mesh = read_mesh(impl->file.group("mesh"));
   impl->schema = detail::read_schema(impl->file);
+  impl->furnace = detail::read_furnace(impl->file);
   impl->fields = detail::read_fields(impl->file);
+  if (impl->furnace) impl->fields = impl->furnace->limited(std::move(impl->fields));
   impl->cases = detail::read_cases(impl->file, impl->schema.size(), impl->fields.size());
   const io::Shape shape{impl->cases.size(), impl->mesh.n_planes, impl->mesh.n_columns};
   for (const auto& field : impl->fields) impl->file.dataset("fields/" + field.name).expect_shape(shape);
@@ -49,6 +52,7 @@ SnapshotStore SnapshotStore::open_here(const std::filesystem::path& path) {
 std::size_t SnapshotStore::n_cases() const { return impl_->cases.size(); }
 const Mesh& SnapshotStore::mesh() const { return impl_->mesh; }
 const InputSchema& SnapshotStore::schema() const { return impl_->schema; }
+const std::optional<Furnace>& SnapshotStore::furnace() const { return impl_->furnace; }
 const std::vector<FieldInfo>& SnapshotStore::fields() const { return impl_->fields; }
 const std::vector<CaseRecord>& SnapshotStore::cases() const { return impl_->cases; }
 const std::filesystem::path& SnapshotStore::path() const { return impl_->path; }
@@ -73,15 +77,8 @@ MatrixD SnapshotStore::inputs(std::span<const std::size_t> cases) const {
 
 MatrixF SnapshotStore::read(std::string_view field, std::span<const std::size_t> cases) const {
   const auto& mesh = impl_->mesh;
-  const auto known = std::any_of(impl_->fields.begin(), impl_->fields.end(),
-                                 [&](const FieldInfo& f) { return f.name == field; });
-  if (!known) {
-    std::vector<std::string> names;
-    for (const auto& f : impl_->fields) names.push_back(f.name);
-    throw InputError({.what = "unknown field '" + std::string(field) + "'",
-                      .where = path().string(),
-                      .advice = base::name_advice(field, names)});
-  }
+  if (std::ranges::find(impl_->fields, field, &FieldInfo::name) == impl_->fields.end())
+    throw InputError(unknown_field(impl_->fields, field, path().string()));
   const auto dataset = impl_->file.dataset("fields/" + std::string(field));
   MatrixF values(static_cast<Eigen::Index>(cases.size()), static_cast<Eigen::Index>(mesh.n_cells()));
   for (std::size_t row = 0; row < cases.size(); ++row) {
@@ -94,7 +91,7 @@ MatrixF SnapshotStore::read(std::string_view field, std::span<const std::size_t>
 
 std::string SnapshotStore::digest(std::span<const std::size_t> cases) const {
   base::Sha256 hash;
-  hash.add(std::string_view(detail::store_kind)).add(std::string_view(impl_->mesh.digest()));
+  hash.add(io::kinds::snapshots.name).add(std::string_view(impl_->mesh.digest()));
   for (const auto& input : impl_->schema.inputs())
     hash.add(std::string_view(input.name)).add(std::string_view(input.unit));
   for (const auto& field : impl_->fields)

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "case_entries.hpp"
 #include "elrom/base/atomic_file.hpp"
@@ -18,7 +19,7 @@ std::filesystem::path lock_path(const std::filesystem::path& store) {
 }
 
 // Temporaries that killed writers left behind; the lock is held, so they are nobody's.
-const std::filesystem::path& without_remains(const std::filesystem::path& store) {
+void remove_remains(const std::filesystem::path& store) {
   const auto prefix = "." + store.filename().string() + ".";
   const auto folder = store.has_parent_path() ? store.parent_path() : std::filesystem::path(".");
   std::error_code fault;
@@ -26,7 +27,6 @@ const std::filesystem::path& without_remains(const std::filesystem::path& store)
     const auto name = entry.path().filename().string();
     if (name.starts_with(prefix) && name.ends_with(".tmp")) std::filesystem::remove(entry.path(), fault);
   }
-  return store;
 }
 
 std::string content_digest(const MatrixF& fields) {
@@ -76,22 +76,39 @@ void expect_same_fields(const SnapshotStore& store, const std::vector<FieldInfo>
 
 struct SnapshotWriter::Impl {
   std::filesystem::path path;
-  std::size_t n_planes, n_columns, n_inputs;
+  Mesh mesh;
+  InputSchema schema;
   std::vector<FieldInfo> fields;
+  std::optional<Furnace> furnace;
   base::FileLock lock;
-  base::AtomicFile target;
+  std::unique_ptr<base::AtomicFile> target;
   std::optional<io::Hdf5File> file;
   std::vector<CaseRecord> cases;
+  std::size_t n_old = 0;  // of `cases`
 
-  void start_new(const Mesh& mesh, const InputSchema& schema) {
-    file = io::Hdf5File::create(target.temporary());
-    io::write_kind(*file, detail::store_kind, detail::store_format);
+  void begin() {
+    target = std::make_unique<base::AtomicFile>(path);
+    cases.clear();
+    if (std::filesystem::exists(path))
+      continue_from_old();
+    else
+      start_new();
+    if (furnace) {
+      detail::write_furnace(*file, *furnace);
+      io::write_kind(*file, io::kinds::snapshots);  // an older store may be continued
+    }
+    n_old = cases.size();
+  }
+
+  void start_new() {
+    file = io::Hdf5File::create(target->temporary());
+    io::write_kind(*file, io::kinds::snapshots);
     write_mesh(file->create_group("mesh"), mesh);
     detail::write_schema(*file, schema);
     detail::create_fields(*file, fields, mesh);
   }
 
-  void continue_from_old(const Mesh& mesh, const InputSchema& schema) {
+  void continue_from_old() {
     {
       const auto old = SnapshotStore::open(path);
       expect_same_mesh(old, mesh);
@@ -99,8 +116,30 @@ struct SnapshotWriter::Impl {
       expect_same_fields(old, fields);
       cases = old.cases();
     }
-    std::filesystem::copy_file(path, target.temporary());
-    file = io::Hdf5File::open(target.temporary(), io::Hdf5File::Access::edit);
+    std::filesystem::copy_file(path, target->temporary());
+    file = io::Hdf5File::open(target->temporary(), io::Hdf5File::Access::edit);
+  }
+
+  void append(const CaseRecord& record, const MatrixF& values) {
+    const auto i_case = cases.size();
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      const auto dataset = file->dataset("fields/" + fields[f].name);
+      dataset.extend(i_case + 1);
+      const auto row = values.row(static_cast<Eigen::Index>(f));
+      dataset.write_slab<float>({i_case, 0, 0}, {1, mesh.n_planes, mesh.n_columns},
+                                {row.data(), static_cast<std::size_t>(row.size())});
+    }
+    cases.push_back(record);
+  }
+
+  [[nodiscard]] MatrixF fields_of(const io::Hdf5File& from, std::size_t i_case) const {
+    MatrixF values(static_cast<Eigen::Index>(fields.size()), static_cast<Eigen::Index>(mesh.n_cells()));
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      auto row = values.row(static_cast<Eigen::Index>(f));
+      from.dataset("fields/" + fields[f].name)
+          .read_slab<float>({i_case, 0, 0}, {1, mesh.n_planes, mesh.n_columns}, {row.data(), mesh.n_cells()});
+    }
+    return values;
   }
 
   void expect_new(const CaseRecord& record) const {
@@ -121,11 +160,10 @@ struct SnapshotWriter::Impl {
   void expect_complete(const Snapshot& snapshot) const {
     const auto& name = snapshot.record.inputs.name;
     detail::check_case_name(name, path.string());
-    check(snapshot.record.inputs.values.size() == n_inputs, "a case with the wrong number of inputs");
+    check(snapshot.record.inputs.values.size() == schema.size(), "a case with the wrong number of inputs");
     check(snapshot.fields.rows() == static_cast<Eigen::Index>(fields.size()),
           "a case with the wrong number of fields");
-    check(snapshot.fields.cols() == static_cast<Eigen::Index>(n_planes * n_columns),
-          "a case on another mesh");
+    check(snapshot.fields.cols() == static_cast<Eigen::Index>(mesh.n_cells()), "a case on another mesh");
     const auto& errors = snapshot.record.resampling_error;
     check(errors.empty() || errors.size() == fields.size(),
           "resampling errors of the wrong number of fields");
@@ -142,21 +180,10 @@ struct SnapshotWriter::Impl {
 };
 
 SnapshotWriter::SnapshotWriter(const std::filesystem::path& path, const Mesh& mesh, const InputSchema& schema,
-                               const std::vector<FieldInfo>& fields)
-    : impl_(new Impl{path,
-                     mesh.n_planes,
-                     mesh.n_columns,
-                     schema.size(),
-                     fields,
-                     base::FileLock(lock_path(path)),
-                     base::AtomicFile(without_remains(path)),
-                     std::nullopt,
-                     {}}) {
-  if (std::filesystem::exists(path)) {
-    impl_->continue_from_old(mesh, schema);
-  } else {
-    impl_->start_new(mesh, schema);
-  }
+                               const std::vector<FieldInfo>& fields, const std::optional<Furnace>& furnace)
+    : impl_(new Impl{path, mesh, schema, fields, furnace, base::FileLock(lock_path(path)), {}, {}, {}}) {
+  remove_remains(path);
+  impl_->begin();
 }
 
 SnapshotWriter::~SnapshotWriter() = default;
@@ -166,21 +193,24 @@ void SnapshotWriter::add(const Snapshot& snapshot) {
   auto record = snapshot.record;
   record.content_digest = content_digest(snapshot.fields);
   impl_->expect_new(record);
-  const auto i_case = impl_->cases.size();
-  for (std::size_t f = 0; f < impl_->fields.size(); ++f) {
-    const auto dataset = impl_->file->dataset("fields/" + impl_->fields[f].name);
-    dataset.extend(i_case + 1);
-    const auto row = snapshot.fields.row(static_cast<Eigen::Index>(f));
-    dataset.write_slab<float>({i_case, 0, 0}, {1, impl_->n_planes, impl_->n_columns},
-                              {row.data(), static_cast<std::size_t>(row.size())});
-  }
-  impl_->cases.push_back(std::move(record));
+  impl_->append(record, snapshot.fields);
+}
+
+void SnapshotWriter::leave_out(const std::set<std::string>& names) {
+  const auto before = std::exchange(impl_->target, nullptr);
+  const auto cases = std::exchange(impl_->cases, {});
+  const auto n_old = impl_->n_old;
+  impl_->file->close();
+  const auto file = io::Hdf5File::open(before->temporary());
+  impl_->begin();
+  for (std::size_t i = n_old; i < cases.size(); ++i)
+    if (!names.contains(cases[i].inputs.name)) impl_->append(cases[i], impl_->fields_of(file, i));
 }
 
 void SnapshotWriter::commit() {
-  detail::write_cases(*impl_->file, impl_->cases, impl_->n_inputs, impl_->fields.size());
+  detail::write_cases(*impl_->file, impl_->cases, impl_->schema.size(), impl_->fields.size());
   impl_->file->close();
-  impl_->target.commit();
+  impl_->target->commit();
 }
 
 }  // namespace elrom::field

@@ -214,34 +214,23 @@ void Hdf5File::close() {
   writable(H5Fclose(id_.release()), "cannot close", where_);
 }
 
-void write_kind(const Hdf5Object& object, std::string_view kind, FormatVersion version) {
-  object.set_text("kind", kind);
-  object.set_integers("format", std::vector<std::int64_t>{version.major, version.minor});
+void write_kind(const Hdf5Object& object, const FileKind& kind) {
+  object.set_text("kind", kind.name);
+  object.set_integers("format", std::vector<std::int64_t>{kind.version.major, kind.version.minor});
   object.set_text("program", program_version());
 }
 
-FormatVersion check_kind(const Hdf5Object& object, std::string_view kind, FormatVersion ours) {
-  const auto found = object.has_attribute("kind") ? object.text("kind") : "no attribute 'kind'";
-  if (found != kind) {
-    throw InputError({.what = "wrong kind of file",
-                      .where = object.where(),
-                      .found = found,
-                      .expected = std::string(kind)});
+FormatVersion check_kind(const Hdf5Object& object, const FileKind& expected) {
+  const auto text = [&](const char* name) {
+    return object.has_attribute(name) ? std::optional(object.text(name)) : std::nullopt;
+  };
+  std::optional<std::string> format;
+  if (object.has_attribute("format")) {
+    std::vector<std::string> parts;
+    for (const double part : object.numbers("format")) parts.push_back(base::number(part));
+    format = base::join(parts, ".");
   }
-  const auto numbers = object.numbers("format");
-  const bool sane =
-      numbers.size() == 2 && numbers[0] >= 0 && numbers[0] < 1e6 && numbers[1] >= 0 && numbers[1] < 1e6;
-  if (!sane) throw InputError({.what = "damaged attribute 'format'", .where = object.where()});
-  const FormatVersion version{static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
-  if (version.major != ours.major) {
-    throw InputError(
-        {.what = "format version of " + std::string(kind),
-         .where = object.where(),
-         .found = version.text(),
-         .expected = std::to_string(ours.major) + ".x",
-         .advice = version.major > ours.major ? "a newer ELROM wrote it" : "write it again with this ELROM"});
-  }
-  return version;
+  return check_kind({text("kind"), format, text("program")}, expected, object.where());
 }
 
 #define ELROM_HDF5_TYPE(T)                                                                               \

@@ -1,13 +1,10 @@
 #include "elrom/io/stage_cache.hpp"
 
 #include "elrom/base/error.hpp"
-#include "elrom/base/version.hpp"
 
 namespace elrom::io {
 namespace {
 
-constexpr const char* kind = "elrom-stage";
-constexpr const char* format = "1.0";
 constexpr std::size_t digest_digits = 20;  // of 64, in the file's name; the file holds all
 
 std::string file_name(const std::string& text) {
@@ -46,18 +43,13 @@ bool StageCache::read(const std::filesystem::path& path, const std::string& dige
   try {
     file = TensorFile::open(path);
     file.verify_all();
-    if (file.text("kind") == kind && file.text("format") == format && file.text("stage_digest") == digest)
-      return true;
-    log_.warning(path.string() + " belongs to other inputs or another version and is computed again");
+    check_kind(file, kinds::stage);
+    if (file.text("stage_digest") == digest) return true;
+    log_.warning(path.string() + " belongs to other inputs and is computed again");
   } catch (const Error& error) {
     log_.warning(std::string(error.what()) + "; it is computed again");
   }
   return false;
-}
-
-bool StageCache::has(const std::string& stage, const std::string& name, const std::string& digest) const {
-  const auto file = path(stage, name, digest, ".elrom");
-  return !file.empty() && std::filesystem::exists(file);
 }
 
 TensorFile StageCache::get(const std::string& stage, const std::string& name, const std::string& digest,
@@ -74,9 +66,7 @@ TensorFile StageCache::get(const std::string& stage, const std::string& name, co
   }
   file = make();
   if (!target.empty()) {
-    file.set_text("kind", kind);
-    file.set_text("format", format);
-    file.set_text("program", program_version());
+    write_kind(file, kinds::stage);
     file.set_text("stage", stage);
     file.set_text("name", name);
     file.set_text("stage_digest", digest);

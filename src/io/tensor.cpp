@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "dtype_names.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/io/tensor_file.hpp"
@@ -46,23 +47,7 @@ std::size_t size_of(DType type) {
   return 1;
 }
 
-std::string_view name_of(DType type) {
-  switch (type) {
-    case DType::f16:
-      return "F16";
-    case DType::f32:
-      return "F32";
-    case DType::f64:
-      return "F64";
-    case DType::i32:
-      return "I32";
-    case DType::i64:
-      return "I64";
-    case DType::u8:
-      return "U8";
-  }
-  return "?";
-}
+std::string_view name_of(DType type) { return dtype_names.name(type); }
 
 Tensor::Tensor(DType type, std::vector<std::size_t> shape, std::shared_ptr<const void> owner,
                const std::byte* data)

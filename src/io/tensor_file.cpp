@@ -230,4 +230,17 @@ void TensorFile::write(const std::filesystem::path& path) const {
   digest_ = std::move(digest);
 }
 
+void write_kind(TensorFile& file, const FileKind& kind) {
+  file.set_text("kind", std::string(kind.name));
+  file.set_text("format", kind.version.text());
+  file.set_text("program", program_version());
+}
+
+FormatVersion check_kind(const TensorFile& file, const FileKind& expected) {
+  const auto text = [&](const char* key) {
+    return file.has_text(key) ? std::optional(file.text(key)) : std::nullopt;
+  };
+  return check_kind({text("kind"), text("format"), text("program")}, expected, file.where());
+}
+
 }  // namespace elrom::io

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "dtype_names.hpp"
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
@@ -16,13 +17,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t most_dimensions = 8;
-
-std::optional<DType> dtype_of(std::string_view name) {
-  for (const auto type : {DType::f16, DType::f32, DType::f64, DType::i32, DType::i64, DType::u8}) {
-    if (name_of(type) == name) return type;
-  }
-  return std::nullopt;
-}
 
 /// Reads exactly {"__metadata__": {name: text, ...}, name: {"dtype", "shape", "data_offsets"}, ...} and takes
 /// everything else for a fault, told in words of what was found. Written for this grammar: a general JSON
@@ -94,9 +88,10 @@ class HeaderReader {
 
   DType read_type(const std::string& name) {
     const auto text = read_string();
-    const auto type = dtype_of(text);
+    const auto type = dtype_names.find(text);
     if (!type)
-      throw Fault{"type '" + text + "' of tensor '" + name + "' (known: F16, F32, F64, I32, I64, U8)"};
+      throw Fault{"type '" + text + "' of tensor '" + name +
+                  "' (known: " + base::join(dtype_names.names(), ", ") + ")"};
     return *type;
   }
 

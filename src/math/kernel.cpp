@@ -6,34 +6,20 @@
 #include <utility>
 #include <vector>
 
-#include "elrom/base/error.hpp"
-#include "elrom/base/text.hpp"
+#include "elrom/base/enum_names.hpp"
 
 namespace elrom::math {
 
 namespace {
-constexpr std::array<std::pair<Covariance, std::string_view>, 4> names{
-    {{Covariance::exponential, "exponential"},
-     {Covariance::matern32, "matern32"},
-     {Covariance::matern52, "matern52"},
-     {Covariance::gaussian, "gaussian"}}};
+constexpr base::EnumNames<Covariance, 4> names{"covariance function",
+                                               {{Covariance::exponential, "exponential"},
+                                                {Covariance::matern32, "matern32"},
+                                                {Covariance::matern52, "matern52"},
+                                                {Covariance::gaussian, "gaussian"}}};
 }
 
-std::string_view name_of(Covariance covariance) {
-  return std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.first == covariance; })
-      ->second;
-}
-
-Covariance covariance_of(std::string_view name) {
-  std::vector<std::string> known;
-  for (const auto& [kind, text] : names) {
-    if (text == name) return kind;
-    known.emplace_back(text);
-  }
-  throw InputError({.what = "unknown covariance function",
-                    .found = "'" + std::string(name) + "'",
-                    .advice = base::name_advice(name, known)});
-}
+std::string_view name_of(Covariance covariance) { return names.name(covariance); }
+Covariance covariance_of(std::string_view name) { return names.value(name); }
 
 double covariance(Covariance kind, double r) {
   switch (kind) {

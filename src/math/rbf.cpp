@@ -9,18 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include "elrom/base/error.hpp"
-#include "elrom/base/text.hpp"
+#include "elrom/base/enum_names.hpp"
 #include "elrom/math/kernel.hpp"
 
 namespace elrom::math {
 
 namespace {
 
-constexpr std::array<std::pair<RadialFunction, std::string_view>, 3> names{
-    {{RadialFunction::linear, "linear"},
-     {RadialFunction::thin_plate_spline, "thin_plate_spline"},
-     {RadialFunction::cubic, "cubic"}}};
+constexpr base::EnumNames<RadialFunction, 3> names{"radial function",
+                                                   {{RadialFunction::linear, "linear"},
+                                                    {RadialFunction::thin_plate_spline, "thin_plate_spline"},
+                                                    {RadialFunction::cubic, "cubic"}}};
 
 int tail_degree(const RbfOptions& options, const MatrixD& x) {
   const int least = options.function == RadialFunction::linear ? 0 : 1;
@@ -65,20 +64,8 @@ Eigen::MatrixXd solve(const Eigen::MatrixXd& system, const Eigen::MatrixXd& righ
 
 }  // namespace
 
-std::string_view name_of(RadialFunction function) {
-  return std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.first == function; })->second;
-}
-
-RadialFunction radial_function_of(std::string_view name) {
-  std::vector<std::string> known;
-  for (const auto& [function, text] : names) {
-    if (text == name) return function;
-    known.emplace_back(text);
-  }
-  throw InputError({.what = "unknown radial function",
-                    .found = "'" + std::string(name) + "'",
-                    .advice = base::name_advice(name, known)});
-}
+std::string_view name_of(RadialFunction function) { return names.name(function); }
+RadialFunction radial_function_of(std::string_view name) { return names.value(name); }
 
 double radial(RadialFunction function, double r) {
   switch (function) {

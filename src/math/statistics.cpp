@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "elrom/base/error.hpp"
+
 namespace elrom::math {
 
 void RunningMoments::add(double value) {
@@ -61,6 +63,23 @@ double conformal_quantile(std::vector<double> scores, double level) {
   if (scores.empty()) return std::numeric_limits<double>::infinity();
   std::nth_element(scores.begin(), scores.begin() + static_cast<std::ptrdiff_t>(i), scores.end());
   return scores[i];
+}
+
+double sum_of_squares(const MatrixF& values) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < values.rows(); ++i) sum += values.row(i).cast<double>().squaredNorm();
+  return sum;
+}
+
+double squared_distance(std::span<const float> a, std::span<const float> b) {
+  check(a.size() == b.size(), "squared_distance: sizes differ");
+  const auto n = static_cast<Eigen::Index>(a.size());
+  const ConstMapF left(a.data(), 1, n), right(b.data(), 1, n);
+  return (left.cast<double>() - right.cast<double>()).squaredNorm();
+}
+
+double nrmse(double squared_error, double squared_departure, double undefined) {
+  return squared_departure > 0 ? std::sqrt(squared_error / squared_departure) : undefined;
 }
 
 namespace {

@@ -110,19 +110,12 @@ nlohmann::json json_or_null(const std::optional<double>& value) {
 
 }  // namespace
 
-AuditSettings shipped_furnace_audit() {
-  // Heights of the openings as faces of the CFD mesh (33 layers of 47 m), read off its patches.
-  constexpr double layer = 47.0 / 33.0;
+AuditSettings audit_settings(const std::optional<field::Furnace>& furnace) {
   AuditSettings settings;
-  settings.inlets = {{"primary_air", 0, 0},
-                     {"fuel_*", layer, 2 * layer},
-                     {"return_front_*", layer, 2 * layer},
-                     {"return_rear_*", layer, 2 * layer},
-                     {"intrex_*", layer, 2 * layer},
-                     {"secondary_*_lower_*", 2 * layer, 3 * layer},
-                     {"burner_*", 3 * layer, 4 * layer},
-                     {"secondary_*_upper_*", 4 * layer, 5 * layer}};
-  settings.outlet_low_m = 29 * layer;
+  if (!furnace) return settings;
+  settings.solid_density = furnace->solid_density;
+  settings.inlets = furnace->openings;
+  settings.outlet_low_m = furnace->outlet_low_m;
   return settings;
 }
 

@@ -67,13 +67,13 @@ double inflow_below(const CaseView& view, const AuditSettings& settings, const P
   double flow = 0;
   bool any = false;
   for (const auto& inlet : settings.inlets) {
-    const double settled = inlet.z_high_m + margin;
+    const double settled = inlet.high_m + margin;
     for (std::size_t i = 0; i < view.schema.size(); ++i) {
       if (view.schema[i].unit != "kg/s" || !base::matches(view.schema[i].name, inlet.inputs)) continue;
       if (plane.low + touch >= settled) {
         flow += view.inputs[i];
         any = true;
-      } else if (plane.high + margin > inlet.z_low_m + touch) {
+      } else if (plane.high + margin > inlet.low_m + touch) {
         return none;
       }
     }

@@ -4,8 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
-#include "elrom/base/text.hpp"
 #include "elrom/model/banded_networks.hpp"
 #include "model_parts.hpp"
 
@@ -13,6 +13,9 @@ namespace elrom::model {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr base::EnumNames<Combination, 2> combinations{
+    "combination of builds", {{Combination::mean, "mean"}, {Combination::best, "best"}}};
 
 Json describe(const BandedNetworks::Parts& parts) {
   Json submodels = Json::array();
@@ -28,7 +31,7 @@ Json describe(const BandedNetworks::Parts& parts) {
           {"frequencies", parts.planes.n_frequencies},
           {"transform", name_of(parts.transform.kind)},
           {"transform_scale", parts.transform.scale},
-          {"combine", parts.combination == Combination::mean ? "mean" : "best"},
+          {"combine", combinations.name(parts.combination)},
           {"submodels", std::move(submodels)}};
 }
 
@@ -81,12 +84,6 @@ Submodel load_submodel(const io::TensorFile& file, const std::string& prefix, co
   return submodel;
 }
 
-Combination combination_of(const std::string& name) {
-  if (name == "mean") return Combination::mean;
-  if (name == "best") return Combination::best;
-  throw InputError({"unknown combination of builds", {}, name, "mean or best"});
-}
-
 BandedNetworks::Parts load_parts(const io::TensorFile& file, const std::string& prefix,
                                  const Json& description, const Wanted& wanted) {
   BandedNetworks::Parts parts;
@@ -95,7 +92,7 @@ BandedNetworks::Parts load_parts(const io::TensorFile& file, const std::string& 
                   size_of(description, "planes"), size_of(description, "frequencies")};
   parts.transform = {transform_of(description.at("transform").get<std::string>()),
                      description.at("transform_scale").get<float>()};
-  parts.combination = combination_of(description.at("combine").get<std::string>());
+  parts.combination = combinations.value(description.at("combine").get<std::string>());
   parts.inputs = {numbers(file, prefix + "/input_mean"), numbers(file, prefix + "/input_factor"),
                   numbers(file, prefix + "/input_relevance")};
   parts.outputs = {file.tensor(prefix + "/output_mean").matrix(),

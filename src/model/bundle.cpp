@@ -2,49 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <functional>
 
 #include "bundle_info.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
-#include "elrom/base/text.hpp"
 
 namespace elrom::model {
-namespace {
-
-int major_of(const std::string& format) {
-  int major = -1;
-  const auto dot = format.find('.');
-  if (dot != std::string::npos) std::from_chars(format.data(), format.data() + dot, major);
-  return major;
-}
-
-void check_kind(const io::TensorFile& file) {
-  const std::string kind = file.has_text("kind") ? file.text("kind") : "none";
-  if (kind != bundle_kind) {
-    throw InputError({.what = "not a bundle",
-                      .where = file.where(),
-                      .found = "kind '" + kind + "'",
-                      .expected = "'" + std::string(bundle_kind) + "'"});
-  }
-  const auto& format = file.text("format");
-  if (major_of(format) != bundle_format.major) {
-    throw InputError({.what = "bundle of another format version",
-                      .where = file.where(),
-                      .found = format,
-                      .expected = std::to_string(bundle_format.major) + ".x",
-                      .advice = "use the ELROM that wrote it (" +
-                                (file.has_text("program") ? file.text("program") : "unknown") +
-                                ") or train again"});
-  }
-}
-
-}  // namespace
-
 BundleReader::BundleReader(const std::filesystem::path& path, io::Verify verify)
     : file_(io::TensorFile::open(path, verify)) {
-  check_kind(file_);
+  io::check_kind(file_, io::kinds::bundle);
   auto description = bundle_description(file_.text("bundle"), file_.where());
   info_ = std::move(description.info);
   n_planes_ = description.n_planes;
@@ -99,17 +66,16 @@ field::Mesh BundleReader::mesh(const MeshPart& part) const {
   return mesh;
 }
 
+std::optional<field::Furnace> BundleReader::furnace() const {
+  if (!file_.has_text("furnace")) return std::nullopt;
+  return field::parse_furnace(file_.text("furnace"), file_.where() + ":furnace");
+}
+
 Guard BundleReader::guard() const { return Guard::load(file_, "guard", info_.schema); }
 
 std::unique_ptr<FieldModel> BundleReader::model(const std::string& field, const Wanted& wanted) const {
   const auto prefix = field_prefix(field);
-  if (!file_.has_text(prefix)) {
-    std::vector<std::string> names;
-    for (const auto& known : info_.fields) names.push_back(known.name);
-    throw InputError({.what = "no field '" + field + "'",
-                      .where = file_.where(),
-                      .advice = base::name_advice(field, names)});
-  }
+  if (!file_.has_text(prefix)) throw InputError(field::unknown_field(info_.fields, field, file_.where()));
   auto model = load_field_model(file_, prefix, wanted);
   const auto in_words = [](std::size_t inputs, std::size_t planes, std::size_t columns) {
     return std::to_string(inputs) + " inputs, " + std::to_string(planes) + " planes, " +

@@ -1,10 +1,10 @@
 #include "bundle_info.hpp"
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
 #include "model_parts.hpp"
 
@@ -15,11 +15,11 @@ using Json = nlohmann::json;
 
 constexpr std::size_t most_cells = std::numeric_limits<std::int32_t>::max();  // corners are 32-bit
 
-constexpr std::array<std::pair<field::Parity, const char*>, 4> parities{
-    {{field::Parity::scalar, "scalar"},
-     {field::Parity::vector_x, "vector_x"},
-     {field::Parity::vector_y, "vector_y"},
-     {field::Parity::vector_z, "vector_z"}}};
+constexpr base::EnumNames<field::Parity, 4> parities{"parity",
+                                                     {{field::Parity::scalar, "scalar"},
+                                                      {field::Parity::vector_x, "vector_x"},
+                                                      {field::Parity::vector_y, "vector_y"},
+                                                      {field::Parity::vector_z, "vector_z"}}};
 
 Json bound_to_json(const std::optional<double>& bound) { return bound ? Json(*bound) : Json(); }
 std::optional<double> bound_from_json(const Json& json) {
@@ -27,14 +27,10 @@ std::optional<double> bound_from_json(const Json& json) {
 }
 
 Json to_json(const field::FieldInfo& info) {
-  const char* parity = "";
-  for (const auto& [value, name] : parities) {
-    if (value == info.parity) parity = name;
-  }
   return {{"name", info.name},
           {"meaning", info.meaning},
           {"unit", info.unit},
-          {"parity", parity},
+          {"parity", parities.name(info.parity)},
           {"lower", bound_to_json(info.lower)},
           {"upper", bound_to_json(info.upper)}};
 }
@@ -44,9 +40,7 @@ field::FieldInfo field_from_json(const Json& json) {
   info.name = json.at("name").get<std::string>();
   info.meaning = json.at("meaning").get<std::string>();
   info.unit = json.at("unit").get<std::string>();
-  for (const auto& [value, name] : parities) {
-    if (json.at("parity").get<std::string>() == name) info.parity = value;
-  }
+  info.parity = parities.find(json.at("parity").get<std::string>()).value_or(field::Parity::scalar);
   info.lower = bound_from_json(json.at("lower"));
   info.upper = bound_from_json(json.at("upper"));
   return info;

@@ -4,13 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "elrom/base/version.hpp"
 #include "elrom/model/bundle.hpp"
 
 namespace elrom::model {
-
-inline constexpr std::string_view bundle_kind = "elrom-bundle";
-inline constexpr FormatVersion bundle_format{1, 0};
 
 /// Where a bundle keeps a field's model and its uncertainty.
 inline std::string field_prefix(const std::string& field) { return "fields/" + field; }

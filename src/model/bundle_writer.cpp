@@ -29,10 +29,9 @@ void check_consistent(const Bundle& bundle) {
 void Bundle::write(const std::filesystem::path& path) const {
   check_consistent(*this);
   io::TensorFile file;
-  file.set_text("kind", std::string(bundle_kind));
-  file.set_text("format", bundle_format.text());
-  file.set_text("program", program_version());
+  io::write_kind(file, io::kinds::bundle);
   file.set_text("bundle", to_json({info, mesh.n_planes, mesh.n_columns, mesh.digest()}));
+  if (furnace) file.set_text("furnace", field::to_toml(*furnace));
   save_mesh(file, mesh);
   save_packed_mesh(file, mesh);
   guard.save(file, "guard");

@@ -26,8 +26,8 @@ std::size_t count_of(const nlohmann::json& description, const std::string& key, 
 
 }  // namespace
 
-BlendModel::BlendModel(std::vector<Part> parts, const std::string& where) : parts_(std::move(parts)) {
-  const auto fits = [this](const Part& part) {
+BlendModel::BlendModel(std::vector<Member> parts, const std::string& where) : parts_(std::move(parts)) {
+  const auto fits = [this](const Member& part) {
     return part.model->n_inputs() == n_inputs() && part.model->n_planes() == n_planes() &&
            part.model->n_columns() == n_columns() &&
            (part.weights.size() == 1 || part.weights.size() == n_columns()) &&
@@ -45,7 +45,7 @@ void BlendModel::predict(const Query& query, std::span<float> values, std::span<
                          Workspace& workspace) const {
   std::fill(values.begin(), values.end(), 0.0F);
   std::fill(spread.begin(), spread.end(), 0.0F);
-  for (const Part& part : parts_) {
+  for (const Member& part : parts_) {
     const Workspace::Frame frame(workspace);
     const std::span<float> own = workspace.floats(values.size()),
                            own_spread = workspace.floats(spread.size()),
@@ -63,7 +63,7 @@ void BlendModel::predict(const Query& query, std::span<float> values, std::span<
 
 void BlendModel::save(io::TensorFile& file, const std::string& prefix) const {
   file.set_text(prefix, nlohmann::json{{"kind", kind()}, {"parts", parts_.size()}}.dump());
-  const bool by_column = std::ranges::any_of(parts_, [](const Part& p) { return p.weights.size() > 1; });
+  const bool by_column = std::ranges::any_of(parts_, [](const Member& p) { return p.weights.size() > 1; });
   std::vector<double> weights;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     auto own = parts_[i].weights;
@@ -84,7 +84,7 @@ std::unique_ptr<FieldModel> BlendModel::load(const io::TensorFile& file, const s
   if (file.tensor(prefix + "/weights").shape().size() > 1) shape.push_back(io::any_size);
   const std::span<const double> weights = file.tensor(prefix + "/weights", shape).f64();
   const auto per_part = static_cast<std::ptrdiff_t>(weights.size() / n);
-  std::vector<Part> parts;
+  std::vector<Member> parts;
   for (std::size_t i = 0; i < n; ++i) {
     const auto first = weights.begin() + static_cast<std::ptrdiff_t>(i) * per_part;
     parts.push_back(

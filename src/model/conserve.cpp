@@ -27,23 +27,27 @@ struct Change {
   [[nodiscard]] double relative() const { return squared_field > 0 ? std::sqrt(squared / squared_field) : 0; }
 };
 
-// Volume fraction moved by multiplier m, inside its bounds.
-double moved(float fraction, double scale, double m) {
-  return std::clamp(fraction + m * scale * scale, 0.0, field::packing_limit);
-}
+// The volume fraction of solids, with what its change is measured by.
+struct Fraction {
+  const field::Mesh& mesh;
+  std::span<const float> values;
+  std::vector<double> scale;
+  double density, most;
 
-double mass_at(const field::Mesh& mesh, std::span<const float> fraction, std::span<const double> scale,
-               double density, double m) {
-  double mass = 0;
-  for (std::size_t c = 0; c < fraction.size(); ++c)
-    mass += density * mesh.volume[c] * moved(fraction[c], scale[c], m);
-  return mass;
-}
+  /// Moved by multiplier m, inside the bounds.
+  [[nodiscard]] double moved(std::size_t c, double m) const {
+    return std::clamp(values[c] + m * scale[c] * scale[c], 0.0, most);
+  }
+  [[nodiscard]] double mass_at(double m) const {
+    double mass = 0;
+    for (std::size_t c = 0; c < values.size(); ++c) mass += density * mesh.volume[c] * moved(c, m);
+    return mass;
+  }
+};
 
 // The mass grows with m, so a bracket and bisection find it whatever bounds become active.
-double multiplier_for(const field::Mesh& mesh, std::span<const float> fraction, std::span<const double> scale,
-                      double density, double target) {
-  const auto mass = [&](double m) { return mass_at(mesh, fraction, scale, density, m); };
+double multiplier_for(const Fraction& fraction, double target) {
+  const auto mass = [&](double m) { return fraction.mass_at(m); };
   double low = -1, high = 1;
   for (int i = 0; i < 200 && mass(low) > target; ++i) low *= 2;
   for (int i = 0; i < 200 && mass(high) < target; ++i) high *= 2;
@@ -64,19 +68,23 @@ void conserve_solids(const CaseView& view, std::span<float> values, std::span<co
   const auto inventory = input_value(view, "solids_inventory");
   if (!i_fraction || !inventory) return;
   const std::size_t n_cells = view.mesh.n_cells();
-  const auto fraction = values.subspan(*i_fraction * n_cells, n_cells);
-  std::vector<double> scale(n_cells);
+  const auto values_of_fraction = values.subspan(*i_fraction * n_cells, n_cells);
+  Fraction fraction{.mesh = view.mesh,
+                    .values = values_of_fraction,
+                    .scale = std::vector<double>(n_cells),
+                    .density = settings.solid_density,
+                    .most = view.fields[*i_fraction].upper.value_or(1)};
   for (std::size_t c = 0; c < n_cells; ++c)
-    scale[c] = scale_of_values.empty() ? std::max(double{fraction[c]}, 1e-6)
-                                       : scale_of_values[*i_fraction * n_cells + c];
+    fraction.scale[c] = scale_of_values.empty() ? std::max(double{fraction.values[c]}, 1e-6)
+                                                : scale_of_values[*i_fraction * n_cells + c];
 
-  const double before = mass_at(view.mesh, fraction, scale, settings.solid_density, 0);
-  const double m = multiplier_for(view.mesh, fraction, scale, settings.solid_density, *inventory);
+  const double before = fraction.mass_at(0);
+  const double m = multiplier_for(fraction, *inventory);
   Change change;
   for (std::size_t c = 0; c < n_cells; ++c) {
-    const double after = moved(fraction[c], scale[c], m);
-    change.add(fraction[c], after, view.mesh.volume[c]);
-    fraction[c] = static_cast<float>(after);
+    const double after = fraction.moved(c, m);
+    change.add(fraction.values[c], after, view.mesh.volume[c]);
+    values_of_fraction[c] = static_cast<float>(after);
   }
   result.solids_kg = *inventory - before;
   result.volume_fraction_rms = change.rms();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
 #include "model_parts.hpp"
 
@@ -15,7 +16,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<std::string_view, 4> kind_names{"value", "square", "logarithm", "quotient"};
+constexpr base::EnumNames<FeatureTerm::Kind, 4> kinds{"derived input",
+                                                      {{FeatureTerm::Kind::value, "value"},
+                                                       {FeatureTerm::Kind::square, "square"},
+                                                       {FeatureTerm::Kind::logarithm, "logarithm"},
+                                                       {FeatureTerm::Kind::quotient, "quotient"}}};
 
 void check_form(const LinearForm& form, std::size_t n_inputs) {
   const bool fits = form.inputs.size() == form.weights.size() &&
@@ -41,9 +46,8 @@ LinearForm form_of(const Json& json) {
 Json to_json(const Feature& feature) {
   Json terms = Json::array();
   for (const FeatureTerm& term : feature.terms) {
-    Json entry{{"kind", kind_names[static_cast<std::size_t>(term.kind)]},
-               {"coefficient", term.coefficient},
-               {"form", to_json(term.form)}};
+    Json entry{
+        {"kind", kinds.name(term.kind)}, {"coefficient", term.coefficient}, {"form", to_json(term.form)}};
     if (term.kind == FeatureTerm::Kind::quotient) entry["denominator"] = to_json(term.denominator);
     if (term.floor > 0) entry["floor"] = term.floor;
     terms.push_back(std::move(entry));
@@ -53,11 +57,7 @@ Json to_json(const Feature& feature) {
 
 FeatureTerm term_of(const Json& json) {
   FeatureTerm term;
-  const auto kind = json.at("kind").get<std::string>();
-  const auto found = std::find(kind_names.begin(), kind_names.end(), kind);
-  if (found == kind_names.end())
-    throw InputError({.what = "unknown derived input", .found = "'" + kind + "'"});
-  term.kind = static_cast<FeatureTerm::Kind>(found - kind_names.begin());
+  term.kind = kinds.value(json.at("kind").get<std::string>());
   term.coefficient = json.at("coefficient").get<double>();
   term.form = form_of(json.at("form"));
   if (term.kind == FeatureTerm::Kind::quotient) term.denominator = form_of(json.at("denominator"));

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
@@ -14,6 +15,8 @@
 namespace elrom::model {
 namespace {
 
+constexpr base::EnumNames<Verdict, 3> verdicts{
+    "verdict", {{Verdict::inside, "inside"}, {Verdict::edge, "edge"}, {Verdict::outside, "outside"}}};
 constexpr std::size_t n_nearest = 3;
 constexpr double edge_margin = 0.1;       // of an input's trained width: beyond it a case is outside
 constexpr double edge_p_value = 0.05;     // rarer than this among the training cases: edge
@@ -107,17 +110,7 @@ std::string reason_text(const Assessment& assessment, double loneliest) {
 
 }  // namespace
 
-std::string_view name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::inside:
-      return "inside";
-    case Verdict::edge:
-      return "edge";
-    case Verdict::outside:
-      return "outside";
-  }
-  return "?";
-}
+std::string_view name_of(Verdict verdict) { return verdicts.name(verdict); }
 
 Guard::Guard(const field::InputSchema& schema, const MatrixD& inputs, std::vector<std::string> names,
              std::vector<double> loads)

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "dense_kernel.hpp"
+#include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
-#include "elrom/base/text.hpp"
 #include "model_parts.hpp"
 
 namespace elrom::model {
@@ -16,8 +16,8 @@ namespace {
 /// Rows of one pass: the activations of a pass stay in the second-level cache.
 constexpr std::size_t block_rows = 5 * lane;
 
-constexpr std::array<std::pair<std::string_view, Activation>, 3> activations{
-    {{"relu", Activation::relu}, {"tanh", Activation::tanh}, {"silu", Activation::silu}}};
+constexpr base::EnumNames<Activation, 3> names{
+    "activation", {{Activation::relu, "relu"}, {Activation::tanh, "tanh"}, {Activation::silu, "silu"}}};
 
 void require(bool fits, std::size_t i_layer, const std::string& found, const std::string& expected) {
   if (!fits)
@@ -39,20 +39,8 @@ void check_layer(const Layer& layer, std::size_t i_layer) {
 
 }  // namespace
 
-std::string_view name_of(Activation activation) {
-  for (const auto& [name, value] : activations)
-    if (value == activation) return name;
-  throw std::logic_error("activation without a name");
-}
-
-Activation activation_of(std::string_view name) {
-  std::vector<std::string> known;
-  for (const auto& [known_name, value] : activations) {
-    if (known_name == name) return value;
-    known.emplace_back(known_name);
-  }
-  throw InputError({"unknown activation", {}, std::string(name), {}, base::name_advice(name, known)});
-}
+std::string_view name_of(Activation activation) { return names.name(activation); }
+Activation activation_of(std::string_view name) { return names.value(name); }
 
 Network::Network(std::vector<Layer> layers, Activation activation)
     : layers_(std::move(layers)), activation_(activation) {

@@ -6,16 +6,15 @@
 #include <numbers>
 #include <vector>
 
-#include "elrom/base/error.hpp"
-#include "elrom/base/text.hpp"
+#include "elrom/base/enum_names.hpp"
 
 namespace elrom::model {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, PlaneEncodingKind>, 3> kinds{
-    {{"index", PlaneEncodingKind::index},
-     {"fourier", PlaneEncodingKind::fourier},
-     {"one_hot", PlaneEncodingKind::one_hot}}};
+constexpr base::EnumNames<PlaneEncodingKind, 3> names{"plane encoding",
+                                                      {{PlaneEncodingKind::index, "index"},
+                                                       {PlaneEncodingKind::fourier, "fourier"},
+                                                       {PlaneEncodingKind::one_hot, "one_hot"}}};
 
 /// (plane - mean) / standard deviation over 0 ... n_planes - 1; 0 for a single plane.
 double standardised_index(std::size_t plane, std::size_t n_planes) {
@@ -26,20 +25,8 @@ double standardised_index(std::size_t plane, std::size_t n_planes) {
 
 }  // namespace
 
-std::string_view name_of(PlaneEncodingKind kind) {
-  for (const auto& [name, value] : kinds)
-    if (value == kind) return name;
-  throw std::logic_error("plane encoding without a name");
-}
-
-PlaneEncodingKind plane_encoding_of(std::string_view name) {
-  std::vector<std::string> known;
-  for (const auto& [known_name, value] : kinds) {
-    if (known_name == name) return value;
-    known.emplace_back(known_name);
-  }
-  throw InputError({"unknown plane encoding", {}, std::string(name), {}, base::name_advice(name, known)});
-}
+std::string_view name_of(PlaneEncodingKind kind) { return names.name(kind); }
+PlaneEncodingKind plane_encoding_of(std::string_view name) { return names.value(name); }
 
 std::size_t PlaneEncoding::size() const {
   switch (kind) {

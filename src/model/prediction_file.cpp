@@ -5,7 +5,6 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/io/vtkhdf.hpp"
-#include "prediction_format.hpp"
 #include "prediction_physics.hpp"
 
 namespace elrom::model {
@@ -120,7 +119,7 @@ PredictionFrame::PredictionFrame(const Predictor& predictor, Extent of)
 PredictionWriter::PredictionWriter(const PredictionFrame& frame, const field::CaseInputs& inputs,
                                    const Assessment& assessment, const std::filesystem::path& path)
     : frame_(frame), file_(io::Hdf5File::create(path)) {
-  io::write_kind(file_, prediction_kind, prediction_format);
+  io::write_kind(file_, io::kinds::prediction);
   write_identity(frame, inputs, assessment, file_);
   const auto elrom = file_.create_group("elrom");
   write_identity(frame, inputs, assessment, elrom);

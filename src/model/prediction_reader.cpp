@@ -1,7 +1,6 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/model/prediction_file.hpp"
-#include "prediction_format.hpp"
 
 namespace elrom::model {
 namespace {
@@ -63,7 +62,7 @@ void read_fields(const io::Hdf5Group& elrom, StoredPrediction& stored) {
 
 StoredPrediction read_here(const std::filesystem::path& path) {
   const auto file = io::Hdf5File::open(path);
-  io::check_kind(file, prediction_kind, prediction_format);
+  io::check_kind(file, io::kinds::prediction);
   const auto elrom = file.group("elrom");
   StoredPrediction stored;
   read_identity(elrom, stored);

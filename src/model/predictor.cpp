@@ -9,7 +9,6 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
-#include "elrom/base/text.hpp"
 
 namespace elrom::model {
 namespace {
@@ -17,23 +16,6 @@ namespace {
 /// Planes are shared out among threads in multiples of this: the
 /// models' kernels work on whole vectors of planes.
 constexpr std::size_t plane_grain = 16;
-
-std::vector<field::FieldInfo> chosen_fields(const BundleReader& bundle,
-                                            const std::vector<std::string>& wanted) {
-  const auto& all = bundle.info().fields;
-  if (wanted.empty()) return all;
-  std::vector<std::string> names;
-  for (const auto& info : all) names.push_back(info.name);
-  for (const auto& name : wanted) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw UsageError({.what = "unknown field '" + name + "'", .advice = base::name_advice(name, names)});
-  }
-  std::vector<field::FieldInfo> chosen;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const field::FieldInfo& info) {
-    return std::find(wanted.begin(), wanted.end(), info.name) != wanted.end();
-  });
-  return chosen;
-}
 
 /// Bounds of a field in the cells' own precision; a lower bound of a length (diameter) is exclusive.
 struct Bounds {
@@ -111,7 +93,7 @@ struct Predictor::Impl {
 Predictor::Impl::Impl(BundleReader reader, Selection wanted)
     : bundle(std::move(reader)),
       selection(std::move(wanted)),
-      fields(chosen_fields(bundle, selection.fields)),
+      fields(field::keep_fields(bundle.info().fields, selection.fields)),
       planes(selection.planes.numbers(bundle.n_planes())),
       models(fields.size()),
       uncertainty(fields.size()),

@@ -4,31 +4,19 @@
 #include <array>
 #include <vector>
 
-#include "elrom/base/error.hpp"
-#include "elrom/base/text.hpp"
+#include "elrom/base/enum_names.hpp"
 
 namespace elrom::model {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, TransformKind>, 3> kinds{
-    {{"none", TransformKind::none}, {"log", TransformKind::log}, {"asinh", TransformKind::asinh}}};
+constexpr base::EnumNames<TransformKind, 3> names{
+    "target transform",
+    {{TransformKind::none, "none"}, {TransformKind::log, "log"}, {TransformKind::asinh, "asinh"}}};
 
 }  // namespace
 
-std::string_view name_of(TransformKind kind) {
-  for (const auto& [name, value] : kinds)
-    if (value == kind) return name;
-  throw std::logic_error("target transform without a name");
-}
-
-TransformKind transform_of(std::string_view name) {
-  std::vector<std::string> known;
-  for (const auto& [known_name, value] : kinds) {
-    if (known_name == name) return value;
-    known.emplace_back(known_name);
-  }
-  throw InputError({"unknown target transform", {}, std::string(name), {}, base::name_advice(name, known)});
-}
+std::string_view name_of(TransformKind kind) { return names.name(kind); }
+TransformKind transform_of(std::string_view name) { return names.value(name); }
 
 TargetTransform TargetTransform::fit(TransformKind kind, std::span<const float> values) {
   if (kind == TransformKind::none) return {};

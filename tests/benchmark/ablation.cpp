@@ -12,16 +12,18 @@
 
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "elrom/base/text.hpp"
+#include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/kernel_method.hpp"
 #include "elrom/methods/networks_method.hpp"
 #include "elrom/methods/peers.hpp"
 #include "elrom/methods/pod_mlp.hpp"
 #include "elrom/model/composite_models.hpp"
-#include "elrom/networks/split.hpp"
+#include "elrom/study/held_out.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/torch/trainer.hpp"
 #include "support/benchmark.hpp"
@@ -79,13 +81,12 @@ class Workbench {
         trainer_(elrom::torch::make_torch_trainer()),
         store_(field::SnapshotStore::open(options.store)) {
     const auto used = settings({});
-    std::vector<std::string> names;
-    for (const auto& record : store_.cases()) names.push_back(record.inputs.name);
-    const auto held = study::hold_out(names, used.split.held_out);
+    const auto held = study::hold_out(store_, study::held_out_patterns(store_, used, silent_log()));
     // Repeated runs judge noise, not skill: held out, but not judged.
     Rows rows = held.building;
     for (const std::size_t row : held.held_out)
-      if (!base::matches(names[row], "rep*")) rows.push_back(row);
+      if (!store_.furnace() || !store_.furnace()->is_repeat(store_.cases()[row].inputs.name))
+        rows.push_back(row);
     cases_ = study::study_cases(store_, used, rows, silent_log());
     rows_ = rows;
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -250,7 +251,7 @@ class Workbench {
     for (auto& outcome : outcomes) outcome.seconds = watch.seconds();
     for (std::size_t r = 0; r < outcomes.size(); ++r)
       outcomes[r].held_out =
-          std::sqrt(squared_error(*variant.readings[r].read(whole, data_), judged_) / departure(judged_));
+          math::nrmse(squared_error(*variant.readings[r].read(whole, data_), judged_), departure(judged_));
     const auto folds = methods::load_grouped_folds(cases_.loads, building_, n_folds);
     for (std::size_t k = 0; k < folds.size(); ++k) {
       const Model model = method->fit(data_, methods::rows_without(folds, k), context());
@@ -258,7 +259,7 @@ class Workbench {
         squares[r] += squared_error(*variant.readings[r].read(model, data_), folds[k]);
     }
     for (std::size_t r = 0; r < squares.size(); ++r)
-      outcomes[r].cross = std::sqrt(squares[r] / departure(building_));
+      outcomes[r].cross = math::nrmse(squares[r], departure(building_));
     return outcomes;
   }
 
@@ -327,20 +328,13 @@ class Workbench {
 int main(int argc, char** argv) {
   return base::run_app("bench-ablation", [&] {
     Options options;
-    CLI::App app("Error and training time of the networks' options on real cases, one switched at a time");
-    options.add_to(app, "snapshot store");
-    app.get_option("--store")->required();
-    app.add_option("--fields", options.fields, "fields, separated by commas [default: all]")->delimiter(',');
-    app.add_option("--options", options.variants, "rows of the table, separated by commas [default: all]")
-        ->delimiter(',');
-    app.add_option("--source-trials", options.source_trials,
-                   "of the search in the source's method (it has 50)")
-        ->capture_default_str();
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-    }
+    benchmark::CommandLine line(
+        "Error and training time of the networks' options on real cases, one switched at a time");
+    options.add_to(line, "snapshot store", benchmark::CommandLine::Need::required);
+    line.add_list("--fields", options.fields, "fields, separated by commas [default: all]");
+    line.add_list("--options", options.variants, "rows of the table, separated by commas [default: all]");
+    line.add("--source-trials", options.source_trials, "of the search in the source's method (it has 50)");
+    if (const auto status = line.parse(argc, argv)) return *status;
     Workbench(options).run();
     return 0;
   });

@@ -10,9 +10,11 @@
 
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/math/statistics.hpp"
 #include "support/benchmark.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -31,7 +33,7 @@ struct Options : benchmark::Arguments {
   std::filesystem::path folder;
 };
 
-struct networks::Trial {
+struct Trial {
   std::string name;
   Names held_out;
 };
@@ -40,8 +42,8 @@ bool matches_any(const std::string& name, const Names& patterns) {
   return std::ranges::any_of(patterns, [&](const auto& p) { return base::matches(name, p); });
 }
 
-std::vector<networks::Trial> trials_of(const Options& options) {
-  std::vector<networks::Trial> trials{{"held out", options.held_out}};
+std::vector<Trial> trials_of(const Options& options) {
+  std::vector<Trial> trials{{"held out", options.held_out}};
   const auto store = field::SnapshotStore::open(options.store);
   std::vector<field::CaseInputs> cases;
   for (const auto& record : store.cases())
@@ -50,7 +52,7 @@ std::vector<networks::Trial> trials_of(const Options& options) {
       cases.push_back(record.inputs);
   std::ranges::stable_sort(cases, {}, &field::CaseInputs::load);
   for (std::size_t s = 0; s < options.sets; ++s) {
-    networks::Trial trial{fmt::format("set {}", s + 1), {}};
+    Trial trial{fmt::format("set {}", s + 1), {}};
     for (std::size_t i = s; i < cases.size(); i += options.sets) trial.held_out.push_back(cases[i].name);
     trials.push_back(std::move(trial));
   }
@@ -58,7 +60,7 @@ std::vector<networks::Trial> trials_of(const Options& options) {
 }
 
 /// The report of one trained trial. Folders that are kept go on from where they were.
-Json report_of(const networks::Trial& trial, const Options& options, const std::filesystem::path& folder) {
+Json report_of(const Trial& trial, const Options& options, const std::filesystem::path& folder) {
   Names patterns;
   for (const auto* names : {&trial.held_out, &options.repeats})
     for (const auto& name : *names) patterns.push_back("\"" + name + "\"");
@@ -81,7 +83,7 @@ Json report_of(const networks::Trial& trial, const Options& options, const std::
 /// Sums of squares of one method in one field, which trials can be added in.
 struct Sums {
   double error = 0, departure = 0;
-  [[nodiscard]] double nrmse() const { return departure > 0 ? std::sqrt(error / departure) : 0; }
+  [[nodiscard]] double nrmse() const { return math::nrmse(error, departure, 0); }
 };
 
 /// One trial, or several scored together.
@@ -223,26 +225,17 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   return base::run_app("bench-accuracy", [&] {
     Options options;
-    CLI::App app(
+    benchmark::CommandLine line(
         "Whether ELROM is at or below every simple peer, and its intervals cover what they promise, on the "
         "held-out "
         "cases and on other sets of cases in their place (NRMSE; 1 = no skill).");
-    options.add_to(app, "snapshot store");
-    app.get_option("--store")->required();
-    app.add_option("--sets", options.sets, "further trials, each holding back a share of the training cases")
-        ->capture_default_str();
-    app.add_option("--effort", options.effort, "of the studies")->capture_default_str();
-    app.add_option("--set", options.settings, "key=value: a setting of the studies; repeatable")
-        ->allow_extra_args(false);
-    app.add_option("--folder", options.folder, "keep the studies here, and go on from those that are there");
-    app.add_option("--held-out", options.held_out, "names or patterns of the held-out cases")
-        ->delimiter(',')
-        ->capture_default_str();
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-    }
+    options.add_to(line, "snapshot store", benchmark::CommandLine::Need::required);
+    line.add("--sets", options.sets, "further trials, each holding back a share of the training cases");
+    line.add("--effort", options.effort, "of the studies");
+    line.add_repeated("--set", options.settings, "key=value: a setting of the studies; repeatable");
+    line.add("--folder", options.folder, "keep the studies here, and go on from those that are there");
+    line.add_list("--held-out", options.held_out, "names or patterns of the held-out cases");
+    if (const auto status = line.parse(argc, argv)) return *status;
     options.store = std::filesystem::absolute(options.store);
     if (options.small)
       options.settings.insert(options.settings.end(),

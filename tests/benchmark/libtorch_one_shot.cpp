@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <torch/torch.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <numeric>
 
@@ -15,6 +14,7 @@
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/model/banded_networks.hpp"
 #include "elrom/model/bundle.hpp"
+#include "support/benchmark.hpp"
 
 namespace {
 
@@ -135,17 +135,14 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   return base::run_app("bench-libtorch-one-shot", [&] {
     Options options;
-    CLI::App app("One case predicted by LibTorch from a bundle of networks; raw float32, field by field");
-    app.add_option("--bundle", options.bundle, "bundle of networks")->required();
-    app.add_option("--cases", options.cases, "table of cases; the first is predicted")->required();
-    app.add_option("--output", options.output, "file for the fields, (n_fields, n_planes, n_columns)")
-        ->required();
-    app.add_flag("--best", options.best_only, "the best build instead of the mean");
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-    }
+    benchmark::CommandLine line(
+        "One case predicted by LibTorch from a bundle of networks; raw float32, field by field");
+    using enum benchmark::CommandLine::Need;
+    line.add("--bundle", options.bundle, "bundle of networks", required);
+    line.add("--cases", options.cases, "table of cases; the first is predicted", required);
+    line.add("--output", options.output, "file for the fields, (n_fields, n_planes, n_columns)", required);
+    line.add("--best", options.best_only, "the best build instead of the mean");
+    if (const auto status = line.parse(argc, argv)) return *status;
     return run(options);
   });
 }

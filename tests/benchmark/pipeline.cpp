@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "elrom/field/snapshot_store.hpp"
 #include "support/benchmark.hpp"
 #include "support/temporary_folder.hpp"
@@ -13,12 +15,13 @@ using namespace elrom;
 using benchmark::Stopwatch;
 using Json = nlohmann::ordered_json;
 
-struct Run {
+struct TimedTraining {
   double seconds = 0, rss_gib = 0;
   Json timing;
 };
 
-Run train(const std::filesystem::path& study, const std::filesystem::path& store, bool small, int threads) {
+TimedTraining train(const std::filesystem::path& study, const std::filesystem::path& store, bool small,
+                    int threads) {
   const Stopwatch watch;
   std::vector<std::string> arguments{"run",       study.string(),          "--store", store.string(),
                                      "--threads", std::to_string(threads), "-q"};

@@ -2,7 +2,6 @@
 // this machine and beside the same networks in LibTorch.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "elrom/model/predictor.hpp"
 #include "predict_floor.hpp"
 #include "processes.hpp"
+#include "support/benchmark.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -243,14 +243,12 @@ class Benchmark {
 
 int run(int argc, char** argv) {
   Options options;
-  CLI::App app(
-      "Measures elrom-predict: one shot against its floor and LibTorch, parts, a table, a busy neighbour.",
-      "bench-predict");
-  app.add_flag("--small", options.small, "fewer repeats, a shorter table: ends within a minute");
-  app.add_option("--json", options.json, "file for the figures");
-  app.add_option("--bundle", options.bundle,
-                 "measure this bundle; default: random networks of the source's size");
-  CLI11_PARSE(app, argc, argv);
+  CommandLine line(
+      "Measures elrom-predict: one shot against its floor and LibTorch, parts, a table, a busy neighbour.");
+  line.add("--small", options.small, "fewer repeats, a shorter table: ends within a minute");
+  line.add("--json", options.json, "file for the figures");
+  line.add("--bundle", options.bundle, "measure this bundle; default: random networks of the source's size");
+  if (const auto status = line.parse(argc, argv)) return *status;
   if (options.small) options.repeats = 12;
   options.programs = std::filesystem::canonical("/proc/self/exe").parent_path();
   const auto result = Benchmark(options).run();

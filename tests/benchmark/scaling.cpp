@@ -2,6 +2,7 @@
 // full size: screening, search and builds, from nothing each time.
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "elrom/field/snapshot_store.hpp"
 #include "support/benchmark.hpp"

@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "elrom/base/log.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/networks/records.hpp"
+#include "elrom/study/held_out.hpp"
 #include "elrom/study/study.hpp"
 #include "sequential_screening.hpp"
 #include "support/benchmark.hpp"
@@ -38,9 +41,9 @@ std::filesystem::path generated_store(const benchmark::Arguments& arguments,
 
 networks::ScreeningData records_of(const field::FieldData& data, const study::Settings& settings) {
   const auto all = math::all_rows(data.cases->n_cases());
-  const auto part =
-      networks::split_records(data.cases->loads, data.cases->mesh.n_planes, settings.split, base::Seed(1));
-  return networks::make_records(data, all, part, {}).records;
+  const auto part = networks::split_records(data.cases->loads, data.cases->mesh.n_planes,
+                                            networks::part_rule(settings.split), base::Seed(1));
+  return networks::make_records({data, all}, part, {}).records;
 }
 
 // Columns spread over the bands, so that every band's edge is tried.
@@ -99,9 +102,7 @@ Json measure(const benchmark::Arguments& arguments) {
   auto settings = study::read_settings({});
   if (arguments.small) settings.screen.max_epochs = 15;
   const auto log = make_console_log();
-  std::vector<std::string> names;
-  for (const auto& record : store.cases()) names.push_back(record.inputs.name);
-  const auto rows = study::hold_out(names, settings.split.held_out);
+  const auto rows = study::hold_out(store, study::held_out_patterns(store, settings, *log));
   const auto cases = study::study_cases(store, settings, rows.building, *log);
   Totals totals;
   for (const auto& info : store.fields()) {

@@ -6,10 +6,13 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "elrom/base/log.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/networks/records.hpp"
+#include "elrom/study/held_out.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/torch/trainer.hpp"
 #include "support/benchmark.hpp"
@@ -41,15 +44,14 @@ std::filesystem::path shipped_store(const std::filesystem::path& folder) {
 // Every third field, its columns in two halves by the closed-form screen: an easy and a hard submodel.
 std::vector<Problem> submodels(const field::SnapshotStore& store, const study::Settings& settings, bool small,
                                Log& log) {
-  std::vector<std::string> names;
-  for (const auto& record : store.cases()) names.push_back(record.inputs.name);
-  const auto rows = study::hold_out(names, settings.split.held_out);
+  const auto rows = study::hold_out(store, study::held_out_patterns(store, settings, log));
   const auto cases = study::study_cases(store, settings, rows.building, log);
-  const auto part = networks::split_records(cases.loads, cases.mesh.n_planes, settings.split, base::Seed(1));
+  const auto part = networks::split_records(cases.loads, cases.mesh.n_planes,
+                                            networks::part_rule(settings.split), base::Seed(1));
   std::vector<Problem> problems;
   for (std::size_t f = 0; f < store.fields().size(); f += 3) {
     const field::FieldData data{&cases, store.fields()[f], store.read(store.fields()[f].name, rows.building)};
-    const auto set = networks::make_records(data, math::all_rows(cases.n_cases()), part,
+    const auto set = networks::make_records({data, math::all_rows(cases.n_cases())}, part,
                                             {.encoding = model::PlaneEncodingKind::fourier});
     const auto screening = networks::screen_fast(set.records, settings.screen, {});
     const double middle = math::median(screening.column_error());

@@ -4,7 +4,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "elrom/base/app.hpp"
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
+#include "support/benchmark.hpp"
 
 namespace {
 
@@ -152,16 +152,12 @@ int run(bool small, const std::string& json_file) {
 
 int main(int argc, char** argv) {
   return base::run_app("bench-step", [&] {
-    CLI::App app("One training step against sgemm at its own shapes (one thread)");
+    benchmark::CommandLine line("One training step against sgemm at its own shapes (one thread)");
     bool small = false;
     std::string json;
-    app.add_flag("--small", small, "shorter measurements: ends within a minute");
-    app.add_option("--json", json, "write the figures to this file");
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-    }
+    line.add("--small", small, "shorter measurements: ends within a minute");
+    line.add("--json", json, "write the figures to this file");
+    if (const auto status = line.parse(argc, argv)) return *status;
     return run(small, json);
   });
 }

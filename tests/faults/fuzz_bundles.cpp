@@ -96,9 +96,9 @@ std::map<std::string, Model> models_of(field::CaseSet& cases, const field::Field
   models["mirror"] = std::make_shared<model::MirrorModel>(
       models["linear"], field::symmetry_group(cases.mirrors, 3, 4), data.info.parity, 2);
   models["blend"] = std::make_shared<model::BlendModel>(
-      std::vector<model::BlendModel::Part>{{{0.5}, models["nearest"]}, {{0.5}, models["pod_mlp"]}});
-  models["blend_by_column"] = std::make_shared<model::BlendModel>(
-      std::vector<model::BlendModel::Part>{{{0.2, 0.8}, models["linear"]}, {{0.8, 0.2}, models["nearest"]}});
+      std::vector<model::BlendModel::Member>{{{0.5}, models["nearest"]}, {{0.5}, models["pod_mlp"]}});
+  models["blend_by_column"] = std::make_shared<model::BlendModel>(std::vector<model::BlendModel::Member>{
+      {{0.2, 0.8}, models["linear"]}, {{0.8, 0.2}, models["nearest"]}});
   return models;
 }
 

@@ -6,6 +6,7 @@
 
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/io/hdf5.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/throws.hpp"
 
@@ -121,6 +122,73 @@ TEST_F(Store, RefusesNumbersThatAreNotFinite) {
 
   EXPECT_ERROR(InputError, "case 'a', field pressure", writer.add(bad_field));
   EXPECT_ERROR(InputError, "case 'b'", writer.add(bad_input));
+}
+
+Furnace small_furnace() {
+  return {.name = "small",
+          .solid_density = 2500,
+          .packing_limit = 0.5,
+          .openings = {{.inputs = "primary_air", .kind = "primary_air", .low_m = 1, .high_m = 2}}};
+}
+
+TEST_F(Store, CarriesItsFurnace) {
+  fields_.push_back(field_info("solid_volume_fraction"));
+  SnapshotWriter(path_, mesh_, schema_, fields_, small_furnace()).commit();
+
+  const auto store = SnapshotStore::open(path_);
+
+  ASSERT_TRUE(store.furnace().has_value());
+  EXPECT_EQ(to_toml(*store.furnace()), to_toml(small_furnace()));
+  EXPECT_EQ(store.fields()[2].upper, 0.5);
+}
+
+TEST_F(Store, KeepsItsFurnaceUntilItIsGivenAnother) {
+  SnapshotWriter(path_, mesh_, schema_, fields_, small_furnace()).commit();
+  write({{"a", 1}});
+  ASSERT_TRUE(SnapshotStore::open(path_).furnace().has_value());
+  auto other = small_furnace();
+  other.name = "other";
+
+  SnapshotWriter(path_, mesh_, schema_, fields_, other).commit();
+
+  EXPECT_EQ(SnapshotStore::open(path_).furnace()->name, "other");
+  EXPECT_EQ(SnapshotStore::open(path_).n_cases(), 1U);
+}
+
+TEST_F(Store, OlderOnesHaveNoFurnaceAndCanGetOne) {
+  write({{"a", 1}});
+  const std::vector<std::int64_t> older{1, 0};
+  io::Hdf5File::open(path_, io::Hdf5File::Access::edit).set_integers("format", older);
+  EXPECT_FALSE(SnapshotStore::open(path_).furnace().has_value());
+
+  SnapshotWriter(path_, mesh_, schema_, fields_, small_furnace()).commit();
+
+  EXPECT_EQ(SnapshotStore::open(path_).furnace()->name, "small");
+  EXPECT_EQ(io::Hdf5File::open(path_).numbers("format"), (std::vector<double>{1, 1}));
+}
+
+TEST_F(Store, ABrokenFurnaceIsAnInputErrorWithItsLine) {
+  write({{"a", 1}});
+  io::Hdf5File::open(path_, io::Hdf5File::Access::edit).write_texts("furnace", {"name = \"x\"\nsolid = 3\n"});
+
+  EXPECT_ERROR(InputError, "s.h5:furnace:2", SnapshotStore::open(path_));
+}
+
+TEST_F(Store, CasesTakenOutAgainLeaveTheBytesOfAStoreThatNeverHadThem) {
+  write({{"a", 1}});
+  const auto begun = folder_ / "begun.h5";
+  std::filesystem::copy_file(path_, begun);
+  write({{"c", 3}});
+  const auto expected = base::sha256_file(path_);
+  std::filesystem::rename(begun, path_);
+
+  SnapshotWriter writer(path_, mesh_, schema_, fields_);
+  for (const auto& [name, value] : {std::pair("b", 2.0F), std::pair("c", 3.0F), std::pair("d", 4.0F)})
+    writer.add(snapshot(name, value));
+  writer.leave_out({"b", "d", "a"});  // "a" was there before
+  writer.commit();
+
+  EXPECT_EQ(base::sha256_file(path_), expected);
 }
 
 TEST_F(Store, OneWriterAtATime) {

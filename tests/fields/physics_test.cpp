@@ -38,12 +38,17 @@ class PhysicsTest : public ::testing::Test {
                                              {"solids_inventory", "kg", "t"},
                                              {"gas_temperature", "K", "K"}});
     mesh_ = bundle.mesh;
+    bundle.write(folder_ / "no_furnace.elrom");
+    bundle.furnace = field::read_furnace(ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.toml");
     bundle.write(folder_ / "model.elrom");
+    for (auto& opening : bundle.furnace->openings)
+      if (opening.inputs == "burner_*") opening.low_m = opening.high_m = 30;
+    bundle.write(folder_ / "lifted.elrom");
     test::sample_bundle().write(folder_ / "no_inventory.elrom");
   }
-  [[nodiscard]] Outcome predict(const std::string& options) const {
+  [[nodiscard]] Outcome predict(const std::string& options, const std::string& bundle = "model.elrom") const {
     return run(
-        "--bundle '" + (folder_ / "model.elrom").string() +
+        "--bundle '" + (folder_ / bundle).string() +
         "' --set primary_air=7 --set burner_left=14 --set 'solids_inventory=60 t' --set gas_temperature=1100 "
         "--output '" +
         (folder_ / "out").string() + "' " + options);
@@ -169,6 +174,31 @@ TEST_F(PhysicsTest, MissingFieldsAndInputsAreRefused) {
                          "' --set flow_0=7 --set flow_1=14 --set flow_2=21 --set flow_3=28 --conserve");
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.text, HasSubstr("solids_inventory"));
+}
+
+TEST_F(PhysicsTest, TheBundlesFurnaceSaysWhereGasEnters) {
+  ASSERT_EQ(predict("--audit").status, 0);
+  const auto shipped = result().dataset("elrom/audit/planes/gas_inflow").read<double>();
+
+  ASSERT_EQ(predict("--audit", "lifted.elrom").status, 0);
+
+  // Planes of 9.4 m: the burners at 30 m, not at 4 to 6 m, leave plane 1 to the primary air alone.
+  const auto lifted = result().dataset("elrom/audit/planes/gas_inflow").read<double>();
+  EXPECT_NEAR(shipped[2], 7 + 14, 1e-12);
+  EXPECT_NEAR(lifted[1], 7, 1e-12);
+  EXPECT_TRUE(std::isnan(shipped[1]));
+  EXPECT_TRUE(std::isnan(lifted[2]));
+}
+
+TEST_F(PhysicsTest, WithoutAFurnaceAuditAndRepairAreRefused) {
+  for (const std::string option : {"--audit", "--conserve"}) {
+    const auto outcome = predict(option, "no_furnace.elrom");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.text, HasSubstr(option + " needs a furnace description in "));
+    EXPECT_THAT(outcome.text, HasSubstr("no_furnace.elrom: found none"));
+    EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1);
+  }
+  EXPECT_EQ(predict("", "no_furnace.elrom").status, 0);
 }
 
 TEST_F(PhysicsTest, MoreSolidsThanTheFurnaceHoldsIsAnArithmeticError) {

@@ -135,5 +135,21 @@ TEST_F(Generating, RefusesImpossibleSizesAndAnExistingStore) {
   EXPECT_ERROR(UsageError, "already a file", generate(options_, silent_log()));
 }
 
+TEST(Generate, CarriesAFurnaceThatFitsItsInputs) {
+  test::TemporaryFolder folder;
+  generate({.store = folder / "g.h5", .n_cases = 2, .n_planes = 4, .n_columns = 24, .n_inputs = 30},
+           silent_log());
+
+  const auto store = field::SnapshotStore::open(folder / "g.h5");
+
+  ASSERT_TRUE(store.furnace().has_value());
+  EXPECT_NO_THROW(field::expect_fits(*store.furnace(), store.schema(), "g.h5"));
+  EXPECT_TRUE(field::flows_without_opening(*store.furnace(), store.schema()).empty());
+  EXPECT_EQ(store.furnace()->held_out.front(), "load_*");
+  ASSERT_EQ(store.furnace()->mirrors.size(), 2U);
+  for (const auto& mirror : store.furnace()->mirrors)
+    EXPECT_NO_THROW((void)field::resolve(mirror, store.schema(), store.mesh())) << mirror.name;
+}
+
 }  // namespace
 }  // namespace elrom::ingest

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/io/hdf5.hpp"
 #include "support/temporary_folder.hpp"
@@ -62,6 +63,35 @@ TEST_F(ImportChecked, DropsTheCaseAndTakesTheOthers) {
   EXPECT_EQ(summary.n_added, n_cases - 1u);
   EXPECT_TRUE(field::SnapshotStore::open(options_.store).find("train_004").empty());
   EXPECT_THAT(log_.warnings, HasSubstr("left out"));
+}
+
+// A second look at a file would find it gone.
+TEST_F(ImportChecked, ReadsEachFileOnceWhateverIsDropped) {
+  class Remover final : public Log {
+   public:
+    explicit Remover(const std::vector<std::filesystem::path>& files) : files_(files) {}
+    void message(Level, std::string_view) override {}
+    void progress(const Progress& progress) override {
+      if (progress.done > 0) std::filesystem::remove(files_[static_cast<std::size_t>(progress.done - 1)]);
+    }
+
+   private:
+    const std::vector<std::filesystem::path>& files_;
+  } log(options_.files);
+
+  EXPECT_EQ(import_checked(options_, Policy::drop, log).n_added, n_cases - 1u);
+  for (const auto& file : options_.files) EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST_F(ImportChecked, ADroppedCaseLeavesNoTrace) {
+  (void)import_checked(options_, Policy::drop, log_);
+  const auto with_drop = base::sha256_file(options_.store);
+  std::filesystem::remove(options_.store);
+  options_.files.erase(options_.files.begin() + 4);
+
+  (void)import_checked(options_, Policy::refuse, log_);
+
+  EXPECT_EQ(base::sha256_file(options_.store), with_drop);
 }
 
 TEST_F(ImportChecked, KeepsTheCaseWithAWarning) {

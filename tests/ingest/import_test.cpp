@@ -5,15 +5,18 @@
 #include <fstream>
 
 #include "el3d_case.hpp"
+#include "elrom/base/atomic_file.hpp"
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "support/recording_log.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/throws.hpp"
 
 namespace elrom::ingest {
 namespace {
 
-using ::testing::UnorderedElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Importing : public ::testing::Test {
  protected:
@@ -169,11 +172,111 @@ TEST_F(Importing, ATableMustAgreeWithTheExport) {
 }
 
 TEST_F(Importing, CasesCanBeLeftOut) {
-  options_.accept = [](const CfdCase& one) { return one.record.inputs.name != "b"; };
+  const auto others = take({write("a", 0), write("c", 2)});
+  const auto expected = base::sha256_file(options_.store);
+  std::filesystem::remove(options_.store);
+  options_.leave_out = [] { return std::set<std::string>{"b"}; };
 
   const auto summary = take({write("a", 0), write("b", 1), write("c", 2)});
 
   EXPECT_EQ(summary.n_added, 2U);
+  EXPECT_EQ(summary.n_cases, 2U);
+  EXPECT_EQ(summary.mean_error, others.mean_error);
+  EXPECT_EQ(summary.largest_error, others.largest_error);
+  EXPECT_EQ(base::sha256_file(options_.store), expected);
+}
+
+TEST_F(Importing, WithoutAnyCaseLeftThereIsNoStore) {
+  options_.leave_out = [] { return std::set<std::string>{"a"}; };
+
+  EXPECT_EQ(take({write("a", 0)}).n_added, 0U);
+  EXPECT_FALSE(std::filesystem::exists(options_.store));
+}
+
+class ImportingFurnaces : public Importing {
+ protected:
+  static std::string furnace(const std::string& name, const std::string& inputs = "primary_air") {
+    return "name = \"" + name + "\"\n[solids]\ndensity_kg_per_m3 = 2400\npacking_limit = 0.6\n" +
+           "[[opening]]\ninputs = \"" + inputs + "\"\nlow_m = 0\nhigh_m = 1\n";
+  }
+  std::filesystem::path write_furnace(const std::string& file, const std::string& text) {
+    base::write_text(folder_ / file, text);
+    return folder_ / file;
+  }
+  std::string take_and_listen(const std::vector<std::filesystem::path>& files) {
+    options_.files = files;
+    test::RecordingLog log;
+    import_cases(options_, log);
+    return log.text();
+  }
+  std::string in_store() const {
+    const auto store = field::SnapshotStore::open(options_.store);
+    return store.furnace() ? store.furnace()->name : "none";
+  }
+};
+
+TEST_F(ImportingFurnaces, ReadsTheOneBesideTheMeshAndSaysSo) {
+  write_furnace("mesh.toml", furnace("beside"));
+
+  const auto log = take_and_listen({write("a", 0)});
+
+  EXPECT_EQ(in_store(), "beside");
+  EXPECT_EQ(field::SnapshotStore::open(options_.store).fields()[8].upper, 0.6);
+  EXPECT_THAT(log, HasSubstr("furnace description: " + (folder_ / "mesh.toml").string()));
+}
+
+TEST_F(ImportingFurnaces, WithoutOneThereIsNoneAndThatIsTold) {
+  EXPECT_THAT(take_and_listen({write("a", 0)}), HasSubstr("no furnace description"));
+  EXPECT_EQ(in_store(), "none");
+}
+
+TEST_F(ImportingFurnaces, TheOneThatIsNamedWins) {
+  write_furnace("mesh.toml", furnace("beside"));
+  options_.furnace = write_furnace("other.toml", furnace("named"));
+
+  take({write("a", 0)});
+
+  EXPECT_EQ(in_store(), "named");
+}
+
+TEST_F(ImportingFurnaces, AStoreKeepsItsOwnUntilAnotherIsNamed) {
+  write_furnace("mesh.toml", furnace("first"));
+  take({write("a", 0)});
+  EXPECT_THAT(take_and_listen({write("b", 1)}), Not(HasSubstr("furnace")));  // the same: nothing to say
+  write_furnace("mesh.toml", furnace("second"));
+
+  EXPECT_THAT(take_and_listen({write("c", 2)}), HasSubstr("the store keeps its furnace description"));
+  EXPECT_EQ(in_store(), "first");
+  options_.furnace = folder_ / "mesh.toml";
+  EXPECT_EQ(take({}).n_added, 0U);  // no case is needed for that
+  EXPECT_EQ(in_store(), "second");
+  EXPECT_EQ(field::SnapshotStore::open(options_.store).n_cases(), 3U);
+}
+
+TEST_F(ImportingFurnaces, AWrongOneIsRefusedWithItsPlace) {
+  write_furnace("mesh.toml", furnace("f") + "hihg_m = 2\n");
+  expect_refused({write("a", 0)}, "mesh.toml:9; did you mean 'high_m'?");
+
+  options_.furnace = write_furnace("named.toml", furnace("f", "primry_air"));
+  expect_refused({folder_ / "a.h5"}, "did you mean 'primary_air'?");
+}
+
+TEST_F(ImportingFurnaces, OneOfOtherCasesBesideTheMeshIsLeftThere) {
+  write_furnace("mesh.toml", furnace("f", "other_air"));
+
+  EXPECT_THAT(take_and_listen({write("a", 0)}),
+              HasSubstr("furnace description not used: opening 'other_air'"));
+  EXPECT_EQ(in_store(), "none");
+}
+
+TEST_F(ImportingFurnaces, FlowsThatNoOpeningNamesAreTold) {
+  write_furnace("mesh.toml", furnace("f", "primary_air"));
+  test::El3dExport one;
+  one.input_names.push_back("fuel");
+  one.input_units.push_back("kg/s");
+  one.input_values.push_back(3);
+
+  EXPECT_THAT(take_and_listen({write(one)}), HasSubstr("no opening of the furnace for fuel"));
 }
 
 TEST_F(Importing, FieldsOfANewStoreCanBeChosen) {

@@ -2,6 +2,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/store_summary.hpp"
+#include "elrom/io/hdf5.hpp"
 #include "elrom/model/prediction_file.hpp"
 #include "support/sample_run.hpp"
 #include "support/temporary_folder.hpp"
@@ -35,6 +36,22 @@ TEST(PredictionSummary, TellsCaseValidityModelInputsAndRanges) {
 TEST(PredictionSummary, RefusesAnotherKindOfFile) {
   EXPECT_ERROR(InputError, "found elrom-mesh, expected elrom-prediction",
                describe_prediction(ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.h5"));
+}
+
+TEST(PredictionSummary, TakesANewerMinorVersionAndRefusesANewerMajorOne) {
+  const test::TemporaryFolder folder;
+  const test::SampleRun sample;
+  model::write_prediction(sample.frame, sample.prediction(), folder / "a.hdf");
+  const auto mark = [&](int major, int minor) {
+    auto file = io::Hdf5File::open(folder / "a.hdf", io::Hdf5File::Access::edit);
+    file.set_integers("format", std::vector<std::int64_t>{major, minor});
+    file.close();
+  };
+
+  mark(1, 9);
+  EXPECT_NO_THROW(static_cast<void>(describe_prediction(folder / "a.hdf")));
+  mark(2, 0);
+  EXPECT_ERROR(InputError, "found elrom-prediction 2.0", describe_prediction(folder / "a.hdf"));
 }
 
 }  // namespace

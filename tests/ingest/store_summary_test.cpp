@@ -44,6 +44,32 @@ TEST(StoreSummary, WordsNameCasesInputsAndFields) {
   EXPECT_THAT(words, HasSubstr("solid_diameter                m"));
 }
 
+TEST(StoreSummary, ShowsTheFurnace) {
+  test::TemporaryFolder folder;
+  generate({.store = folder / "g.h5", .n_cases = 2, .n_planes = 4, .n_columns = 6}, silent_log());
+  auto bundle = test::sample_bundle({});
+  bundle.write(folder / "none.elrom");
+  bundle.furnace = field::read_furnace(ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.toml");
+  bundle.write(folder / "model.elrom");
+
+  const auto store = describe_store(field::SnapshotStore::open(folder / "g.h5"));
+  const auto described = describe_bundle(model::BundleReader(folder / "model.elrom"));
+
+  EXPECT_EQ(store["furnace"]["name"], "generated");
+  EXPECT_EQ(store["furnace"]["openings"].size(), 21U);
+  EXPECT_EQ(described["furnace"]["openings"][7]["inputs"], "secondary_*_upper_*");
+  EXPECT_EQ(described["furnace"]["held_out"][0], "load_*");
+  const auto words = in_words(described);
+  EXPECT_THAT(
+      words,
+      HasSubstr("furnace: Lagisza CFB boiler; solids of 2400 kg/m3, packing limit 0.65; outlet from 41.3 m"));
+  EXPECT_THAT(words, HasSubstr("mirrors left-right, front-rear; held out load_*, rep*; repeated runs rep*"));
+  EXPECT_THAT(words, HasSubstr("burner_*                    burner          4.273 to 5.697 m"));
+  const auto none = describe_bundle(model::BundleReader(folder / "none.elrom"));
+  EXPECT_TRUE(none["furnace"].is_null());
+  EXPECT_THAT(in_words(none), HasSubstr("furnace: not described"));
+}
+
 TEST(StoreSummary, DescribesACaseAndAMesh) {
   const auto one = describe_case(read_el3d(ELROM_SOURCE_DIR "/data/cases/load_064.h5"));
   const auto mesh = describe_mesh(field::read_mesh(ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.h5"));

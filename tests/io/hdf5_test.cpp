@@ -171,16 +171,5 @@ TEST(Hdf5, PackedChunksStaySmall) {
   EXPECT_LE(chunk[0] * chunk[1] * chunk[2], std::size_t{1} << 20);
 }
 
-TEST(Hdf5, RefusesAnotherKindAndAnotherMajorVersion) {
-  test::TemporaryFolder folder;
-  auto file = Hdf5File::create(folder / "a.h5");
-  write_kind(file, "elrom-mesh", {1, 7});
-
-  EXPECT_EQ(check_kind(file, "elrom-mesh", {1, 0}).minor, 7);
-  EXPECT_ERROR(InputError, "found elrom-mesh, expected elrom-snapshots",
-               check_kind(file, "elrom-snapshots", {1, 0}));
-  EXPECT_ERROR(InputError, "found 1.7, expected 2.x", check_kind(file, "elrom-mesh", {2, 0}));
-}
-
 }  // namespace
 }  // namespace elrom::io

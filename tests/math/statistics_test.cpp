@@ -79,5 +79,23 @@ TEST(ColumnMoments, UseTheGivenRowsAlone) {
   EXPECT_DOUBLE_EQ(moments.deviation[1], 10);
 }
 
+TEST(Nrmse, IsTheErrorOverThatOfTheMean) {
+  MatrixF values(2, 2);
+  values << 1, 2, 3, 4e8F;  // its square is above what float can add 1 to
+  const std::vector<float> truth{1, 2, 4}, prediction{1, 4, 3}, mean{2, 2, 2};
+
+  EXPECT_EQ(sum_of_squares(values), 1.0 + 4.0 + 9.0 + 1.6e17);
+  EXPECT_EQ(squared_distance(prediction, truth), 5);
+  EXPECT_EQ(squared_distance(truth, truth), 0);
+  EXPECT_DOUBLE_EQ(nrmse(squared_distance(prediction, truth), squared_distance(mean, truth)), 1);
+  EXPECT_DOUBLE_EQ(nrmse(1, 4), 0.5);
+}
+
+TEST(Nrmse, OfATruthThatIsTheMeanIsUndefined) {
+  EXPECT_TRUE(std::isnan(nrmse(3, 0)));
+  EXPECT_EQ(nrmse(3, 0, 0), 0);
+  EXPECT_TRUE(std::isnan(nrmse(3, -1)));
+}
+
 }  // namespace
 }  // namespace elrom::math

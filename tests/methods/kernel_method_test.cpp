@@ -11,6 +11,7 @@
 #include "elrom/model/pod_model.hpp"
 #include "leave_one_out.hpp"
 #include "shrinkage.hpp"
+#include "support/changed_members.hpp"
 #include "support/toy_furnace.hpp"
 #include "symmetry_classes.hpp"
 
@@ -162,6 +163,11 @@ TEST(KernelMethod, LearnsTheAsymmetryThatInputsExplain) {
 
   EXPECT_LT(unseen_error(*make_kernel_method(), data),
             0.7 * unseen_error(*make_kernel_method({.antisymmetric = false}), data));
+}
+
+TEST(KernelMethod, EveryOptionIsPartOfTheKey) {
+  for (const auto& options : test::each_member_changed(KernelOptions{}))
+    EXPECT_NE(make_kernel_method(options)->key("pressure"), make_kernel_method()->key("pressure"));
 }
 
 TEST(KernelMethod, WorksWithoutMirrors) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numeric>
 
 #include "elrom/methods/cross_validation.hpp"
@@ -36,12 +37,15 @@ class RandomTrainer final : public networks::Trainer {
 
 class Networks : public ::testing::Test {
  protected:
-  std::unique_ptr<model::FieldModel> fit(const std::vector<std::string>& more) {
-    std::vector<std::string> wanted{"effort=quick", "screen.method=fast"};
-    wanted.insert(wanted.end(), more.begin(), more.end());
+  std::unique_ptr<model::FieldModel> fit(const std::function<void(networks::Settings&)>& change) {
+    networks::Settings settings;
+    settings.screen.method = "fast";
+    settings.search.trials = 4;
+    settings.search.confirm = 0;
+    change(settings);
     std::vector<std::size_t> rows(cases.n_cases());
     std::iota(rows.begin(), rows.end(), 0);
-    return NetworksMethod(read_settings("no such file", wanted), trainer).fit(data, rows, {});
+    return NetworksMethod(settings, trainer).fit(data, rows, {});
   }
   [[nodiscard]] std::vector<float> predict(const model::FieldModel& model,
                                            std::span<const double> inputs) const {
@@ -70,22 +74,27 @@ class Networks : public ::testing::Test {
 };
 
 TEST_F(Networks, AveragedOverMirrorImagesTheyAreAsSymmetricAsTheFurnace) {
-  EXPECT_GT(asymmetry(*fit({"networks.average=false"})), 0.1) << "random weights know no symmetry";
-  EXPECT_LT(asymmetry(*fit({"networks.average=true"})), 1e-4);
+  EXPECT_GT(asymmetry(*fit([](auto& s) { s.networks.average = false; })), 0.1)
+      << "random weights know no symmetry";
+  EXPECT_LT(asymmetry(*fit([](auto& s) { s.networks.average = true; })), 1e-4);
 }
 
 TEST_F(Networks, MirrorImagesAreTrainedOnButDoNotStopTheTraining) {
-  (void)fit({"networks.mirrors=false"});
+  (void)fit([](auto& s) { s.networks.mirrors = false; });
   const auto n_train = trainer->n_train.load(), n_validation = trainer->n_validation.load();
-  (void)fit({"networks.mirrors=true"});
+  (void)fit([](auto& s) { s.networks.mirrors = true; });
   EXPECT_EQ(trainer->n_train, 4 * n_train);
   EXPECT_EQ(trainer->n_validation, n_validation);
 }
 
 TEST_F(Networks, WithoutSymmetryThereAreNoImages) {
-  (void)fit({"networks.mirrors=false"});
+  (void)fit([](auto& s) { s.networks.mirrors = false; });
   const auto n_train = trainer->n_train.load();
-  const auto model = fit({"networks.mirrors=true", "networks.average=true", "symmetry.enabled=false"});
+  const auto model = fit([](auto& s) {
+    s.networks.mirrors = true;
+    s.networks.average = true;
+    s.symmetry.enabled = false;
+  });
   EXPECT_EQ(trainer->n_train, n_train);
   EXPECT_EQ(model->kind(), "networks");
 }

@@ -5,6 +5,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
+#include "support/changed_members.hpp"
 #include "support/throws.hpp"
 #include "support/toy_furnace.hpp"
 
@@ -74,6 +75,11 @@ TEST_P(EveryPeer, KeepsItsNameInTheBundle) {
   const field::CaseSet cases = test::toy_cases(6);
 
   EXPECT_EQ(make_peer(GetParam())->fit(test::toy_field(cases), math::all_rows(6), {})->kind(), GetParam());
+}
+
+TEST_P(EveryPeer, EveryOptionIsPartOfTheKey) {
+  for (const auto& options : test::each_member_changed(PeerOptions{}))
+    EXPECT_NE(make_peer(GetParam(), options)->key("pressure"), make_peer(GetParam())->key("pressure"));
 }
 
 TEST(Peers, UnknownNameGetsTheNearest) {

@@ -8,6 +8,7 @@
 #include "elrom/math/ridge.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/model/pod_model.hpp"
+#include "support/changed_members.hpp"
 #include "support/recording_log.hpp"
 
 namespace elrom::methods {
@@ -131,6 +132,13 @@ TEST(PodMlp, ABuildThatDivergedIsLeftOut) {
   EXPECT_THAT(log.text(), ::testing::HasSubstr("pod_mlp, pressure, build 3 diverged and is lost"));
   EXPECT_THROW((void)make_pod_mlp(std::make_shared<RidgeTrainer>(5))->fit(field.data, rows, {}),
                NumericalError);
+}
+
+TEST(PodMlp, EveryOptionIsPartOfTheKey) {
+  const auto trainer = std::make_shared<RidgeTrainer>();
+  const auto key = make_pod_mlp(trainer)->key("pressure");
+  for (const auto& options : test::each_member_changed(PodMlpOptions{}))
+    EXPECT_NE(make_pod_mlp(trainer, options)->key("pressure"), key);
 }
 
 TEST(PodMlp, AConstantFieldIsPredictedAsItself) {

@@ -41,15 +41,17 @@ struct SmallCase {
                             1,    2,    1,    1,    2,   2,   2,   1,     //
                             900,  900,  500,  500,  200, 200, 100, 130,   //
                             1,    -2,   0,    0,    1,   1,   1,   1};
-  AuditSettings settings;
+  field::Furnace furnace{.name = "small",
+                         .solid_density = 2000,
+                         .packing_limit = 0.65,
+                         .outlet_low_m = 4,
+                         .openings = {{.inputs = "grid_*"}, {.inputs = "wall_*", .high_m = 1}}};
+  AuditSettings settings = audit_settings(furnace);
 
   SmallCase() {
-    settings.solid_density = 2000;
     settings.ambient_pressure = 100000;
     settings.gas_constant = 200;  // density 100000 / (200 * 500) = 1 kg/m3
     settings.gravity = 10;
-    settings.inlets = {{"grid_*", 0, 0}, {"wall_*", 0, 1}};
-    settings.outlet_low_m = 4;
   }
   [[nodiscard]] CaseView view() const { return {mesh, schema, inputs, fields, values}; }
 };
@@ -103,12 +105,46 @@ TEST(Audit, GasBalanceIsDrawnOnlyClearOfTheOpenings) {
 
 TEST(Audit, AnInletDisturbsThePlaneBelowItToo) {
   SmallCase c;
-  c.settings.inlets = {{"grid_*", 0, 0}, {"wall_*", 3, 3.5}};
+  c.settings.inlets = {{.inputs = "grid_*"}, {.inputs = "wall_*", .low_m = 3, .high_m = 3.5}};
 
   const auto result = audit(c.view(), c.settings);
 
   EXPECT_DOUBLE_EQ(result.planes[1].gas_inflow, 3);
   EXPECT_TRUE(std::isnan(result.planes[2].gas_inflow));
+}
+
+// The same case in two furnaces: where gas enters and how dense solids are is the furnace's to say.
+TEST(Audit, FollowsTheFurnace) {
+  const SmallCase c;
+  auto other = c.furnace;
+  other.solid_density = 1000;
+  other.outlet_low_m = 10;
+  other.openings[1].high_m = 0;  // beside the grid, no longer up to 1 m
+
+  const auto first = audit(c.view(), c.settings);
+  auto settings = audit_settings(other);
+  settings.ambient_pressure = c.settings.ambient_pressure;
+  settings.gas_constant = c.settings.gas_constant;
+  const auto second = audit(c.view(), settings);
+
+  EXPECT_NEAR(*second.solids_kg, *first.solids_kg / 2, 1e-3);
+  EXPECT_TRUE(std::isnan(first.planes[1].gas_inflow));
+  EXPECT_DOUBLE_EQ(second.planes[1].gas_inflow, 5);
+  EXPECT_TRUE(std::isnan(first.planes[3].gas_inflow));
+  EXPECT_DOUBLE_EQ(second.planes[3].gas_inflow, 5);
+  EXPECT_NEAR(*first.gas_balance, 6.0 / 5, 1e-6);
+  // Planes 1, 2 and 3 carry 2.7, 6 and 4.9 of 5 kg/s.
+  EXPECT_NEAR(*second.gas_balance, (2.7 + 6 + 4.9) / 3 / 5, 1e-6);
+}
+
+TEST(Audit, WithoutAFurnaceThereIsNoGasBalance) {
+  const SmallCase c;
+
+  const auto result = audit(c.view(), audit_settings(std::nullopt));
+
+  EXPECT_FALSE(result.gas_balance.has_value());
+  EXPECT_TRUE(std::isnan(result.planes[2].gas_inflow));
+  EXPECT_TRUE(std::isfinite(result.planes[2].gas_flow));
 }
 
 TEST(Audit, WorstPlaneAndNetSolidFlowAreOverTheBalancedPlanes) {
@@ -209,6 +245,18 @@ TEST(Conserve, RefusesAnInventoryThatTheFurnaceCannotHold) {
   auto values = c.values;
 
   EXPECT_THROW(conserve(c.view(), values, {}, c.settings), NumericalError);
+}
+
+TEST(Conserve, PacksNoDenserThanTheFieldMay) {
+  SmallCase c;
+  c.inputs[2] = 2000 * 0.5 * 12;
+  c.fields[0].upper = 0.45;  // as a furnace's packing limit sets it
+  auto values = c.values;
+
+  EXPECT_THROW(conserve(c.view(), values, {}, c.settings), NumericalError);
+  c.fields[0].upper = 0.55;
+  conserve(c.view(), values, {}, c.settings);
+  EXPECT_LE(*std::max_element(values.begin(), values.begin() + 8), 0.55F);
 }
 
 }  // namespace

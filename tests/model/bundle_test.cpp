@@ -55,6 +55,24 @@ TEST(Bundle, GivesBackWhatWasWritten) {
   EXPECT_TRUE(mesh.points == written.mesh.points);
 }
 
+TEST(Bundle, CarriesTheFurnaceOfItsCases) {
+  const TemporaryFolder folder;
+  auto written = sample_bundle();
+  written.write(folder / "none.elrom");
+  written.furnace = field::Furnace{.name = "f", .solid_density = 2500, .packing_limit = 0.6};
+  written.furnace->openings = {{.inputs = "flow_*", .low_m = 1, .high_m = 2}};
+  written.write(folder / "model.elrom");
+
+  const BundleReader reader(folder / "model.elrom");
+
+  ASSERT_TRUE(reader.furnace().has_value());
+  EXPECT_EQ(field::to_toml(*reader.furnace()), field::to_toml(*written.furnace));
+  replace_text(folder / "none.elrom", "format", "1.0");
+  EXPECT_FALSE(BundleReader(folder / "none.elrom").furnace().has_value());
+  replace_text(folder / "model.elrom", "furnace", "name = 3");
+  EXPECT_ERROR(InputError, "model.elrom:furnace:1", BundleReader(folder / "model.elrom").furnace());
+}
+
 TEST(Bundle, ModelsPredictTheSameBitsAfterwards) {
   const TemporaryFolder folder;
   const auto written = sample_bundle();
@@ -88,7 +106,7 @@ TEST(Bundle, RejectsNewerMajorVersion) {
 
   const auto message = message_of(folder / "a");
 
-  EXPECT_THAT(message, HasSubstr("found 2.0, expected 1.x"));
+  EXPECT_THAT(message, HasSubstr("found elrom-bundle 2.0, expected elrom-bundle 1.x"));
   EXPECT_THAT(message, HasSubstr("use the ELROM that wrote it"));
 }
 
@@ -106,7 +124,7 @@ TEST(Bundle, RejectsAnotherKindOfTensorFile) {
   other.set_text("kind", "something-else");
   other.write(folder / "a");
 
-  EXPECT_THAT(message_of(folder / "a"), HasSubstr("kind 'something-else', expected 'elrom-bundle'"));
+  EXPECT_THAT(message_of(folder / "a"), HasSubstr("found something-else, expected elrom-bundle"));
 }
 
 TEST(Bundle, RejectsABrokenDescription) {

@@ -65,11 +65,11 @@ std::shared_ptr<FieldModel> make(const std::string& kind) {
   }
   if (kind == "blend") {
     return std::make_shared<BlendModel>(
-        std::vector<BlendModel::Part>{{{0.25}, make("linear")}, {{0.75}, make("pod_rbf")}});
+        std::vector<BlendModel::Member>{{{0.25}, make("linear")}, {{0.75}, make("pod_rbf")}});
   }
   if (kind == "blend_by_column") {
     return std::make_shared<BlendModel>(
-        std::vector<BlendModel::Part>{{column_weights(), make("linear")}, {{0.75}, make("pod_rbf")}});
+        std::vector<BlendModel::Member>{{column_weights(), make("linear")}, {{0.75}, make("pod_rbf")}});
   }
   const Eigen::VectorXd mean = random_matrix(n_planes * n_columns, 1, "mean");
   const MatrixF modes = random_matrix(n_modes, n_planes * n_columns, "modes").cast<float>();

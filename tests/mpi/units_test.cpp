@@ -1,12 +1,13 @@
 // What travels between ranks arrives as it was sent.
 
-#include "mpi/units.hpp"
+#include "units.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "support/changed_members.hpp"
 #include "support/random_network.hpp"
 
 namespace elrom::mpi {
@@ -41,6 +42,29 @@ TEST(Units, ATrainingArrivesWithItsProblem) {
   EXPECT_EQ(digest_of(same), digest_of(problem));
   EXPECT_EQ(same.train_targets, problem.train_targets);
   EXPECT_EQ(same.validation_weights.size(), 0);
+}
+
+TEST(Units, EveryHyperparameterAndLimitArrives) {
+  for (const auto& hyperparameters : test::each_member_changed(networks::Hyperparameters{})) {
+    EXPECT_EQ(train_unit_of(to_message(TrainUnit{.hyperparameters = hyperparameters})).hyperparameters,
+              hyperparameters);
+  }
+  for (const auto& budget : test::each_member_changed(networks::TrainingBudget{})) {
+    EXPECT_EQ(base::digest_of_members(train_unit_of(to_message(TrainUnit{.budget = budget})).budget),
+              base::digest_of_members(budget));
+  }
+}
+
+TEST(Units, EveryScreeningSettingArrives) {
+  networks::ScreeningData data;
+  data.inputs = data.targets = MatrixF::Zero(1, 1);
+  data.plane = data.case_of = {0};
+  data.part = {networks::Part::train};
+  for (const auto& settings : test::each_member_changed(networks::ScreenSettings{})) {
+    auto sent = message(kind::crew);
+    add_data(sent, data, settings, base::Seed(1));
+    EXPECT_EQ(base::digest_of_members(screening_job_of(sent)->settings), base::digest_of_members(settings));
+  }
 }
 
 TEST(Units, TheDigestTellsProblemsApart) {

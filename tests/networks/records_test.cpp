@@ -38,7 +38,8 @@ float unscaled_target(const RecordSet& set, std::size_t record, Eigen::Index col
 
 TEST(Records, TargetsOfTheTrainingRecordsAreStandardisedColumnByColumn) {
   const auto cases = test::toy_cases(n_cases);
-  const auto set = make_records(test::toy_field(cases), all_cases(), whole_case_parts(14), {});
+  const auto data = test::toy_field(cases);
+  const auto set = make_records({data, all_cases()}, whole_case_parts(14), {});
 
   const auto train = set.records.rows(Part::train);
   ASSERT_EQ(train.size(), 14 * n_planes);
@@ -57,13 +58,13 @@ TEST(Records, WhatDoesNotTrainDoesNotMoveTheScalers) {
   auto cases = test::toy_cases(n_cases);
   auto data = test::toy_field(cases);
   const auto parts = whole_case_parts(14);
-  const auto before = make_records(data, all_cases(), parts, {.relevance = Relevance::gp});
+  const auto before = make_records({data, all_cases()}, parts, {.relevance = Relevance::gp});
   data.values.bottomRows(6) *= 1000;
   auto shifted = cases;
   shifted.inputs.bottomRows(6) *= 7;
   data.cases = &shifted;
 
-  const auto after = make_records(data, all_cases(), parts, {.relevance = Relevance::gp});
+  const auto after = make_records({data, all_cases()}, parts, {.relevance = Relevance::gp});
 
   EXPECT_EQ(after.inputs.mean, before.inputs.mean);
   EXPECT_EQ(after.inputs.factor, before.inputs.factor);
@@ -77,7 +78,7 @@ TEST(Records, WhatDoesNotTrainDoesNotMoveTheScalers) {
 TEST(Records, MirrorImagesAreTheFieldsOfMirroredInputs) {
   const auto cases = test::toy_cases(n_cases);
   const auto data = test::toy_field(cases);
-  const auto set = make_records(data, all_cases(), whole_case_parts(14), {.mirrors = true});
+  const auto set = make_records({data, all_cases()}, whole_case_parts(14), {.mirrors = true});
 
   const std::size_t plain = n_cases * n_planes;
   ASSERT_EQ(set.records.plane.size(), plain + 3 * 14 * n_planes)
@@ -100,7 +101,8 @@ TEST(Records, MirrorImagesAreTheFieldsOfMirroredInputs) {
 
 TEST(Records, AProblemOfABandHasItsColumnsOnly) {
   const auto cases = test::toy_cases(n_cases);
-  const auto set = make_records(test::toy_field(cases), all_cases(), whole_case_parts(14), {});
+  const auto data = test::toy_field(cases);
+  const auto set = make_records({data, all_cases()}, whole_case_parts(14), {});
   const Band band{.name = "some", .columns = {3, 11}, .mask = {}};
 
   const auto problem = make_problem(set.records, band);
@@ -114,7 +116,8 @@ TEST(Records, AProblemOfABandHasItsColumnsOnly) {
 
 TEST(Records, AMaskLeavesPlanesOutAndWeighsTheRest) {
   const auto cases = test::toy_cases(n_cases);
-  const auto set = make_records(test::toy_field(cases), all_cases(), whole_case_parts(14), {});
+  const auto data = test::toy_field(cases);
+  const auto set = make_records({data, all_cases()}, whole_case_parts(14), {});
   Band band{.name = "some", .columns = {3, 11}, .mask = std::vector<std::uint8_t>(2 * n_planes, 0)};
   band.mask[2 * 4] = 1;  // plane 4, first column
 

@@ -53,7 +53,7 @@ TEST(Split, FewCasesStillFillEveryPart) {
 }
 
 TEST(Split, ByCaseKeepsThePlanesOfACaseTogether) {
-  const auto records = split_records(rising_loads(20), 7, SplitSettings{}, base::Seed(1));
+  const auto records = split_records(rising_loads(20), 7, {}, base::Seed(1));
 
   for (std::size_t r = 0; r < records.size(); ++r) EXPECT_EQ(records[r], records[r - r % 7]);
 }
@@ -62,7 +62,7 @@ TEST(Split, ByRecordSpreadsTheCasesOverTheParts) {
   SplitSettings settings;
   settings.by = "record";
 
-  const auto records = split_records(rising_loads(20), 50, settings, base::Seed(1));
+  const auto records = split_records(rising_loads(20), 50, part_rule(settings), base::Seed(1));
 
   EXPECT_EQ(std::ranges::count(records, Part::train), 700);
   for (std::size_t i_case = 0; i_case < 20; ++i_case) {

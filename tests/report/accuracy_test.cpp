@@ -1,6 +1,7 @@
 #include "elrom/report/accuracy.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -20,7 +21,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 std::filesystem::path folder(const std::string& name) {
-  return std::filesystem::path(::testing::TempDir()) / ("elrom-report-" + name);
+  return std::filesystem::path(::testing::TempDir()) /
+         ("elrom-report-" + name + "-" + std::to_string(::getpid()));
 }
 
 // One study for all tests of this file: it takes most of their time.

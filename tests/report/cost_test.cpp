@@ -1,16 +1,20 @@
 #include "elrom/report/cost.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/report/learning_curve.hpp"
+#include "support/throws.hpp"
 
 namespace elrom::report {
 namespace {
 
 std::filesystem::path file(const std::string& name) {
-  return std::filesystem::path(::testing::TempDir()) / name;
+  return std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + name);
 }
 
 TEST(Cost, FrontLeavesOutWhatAnotherBeatsInEverything) {
@@ -51,6 +55,28 @@ TEST(Cost, AForeignFileIsRefusedByName) {
   base::write_text(file("foreign.json"), "{\"points\": 3}");
 
   EXPECT_THROW((void)read_cost_report(file("foreign.json")), InputError);
+}
+
+TEST(Cost, ReadersOfReportsTakeNewerMinorVersionsAndRefuseNewerMajorOnes) {
+  const auto with_version = [](const std::string& text, const std::string& version) {
+    auto root = nlohmann::json::parse(text);
+    root["format"] = nlohmann::json::parse(version);
+    base::write_text(file("versioned.json"), root.dump());
+    return file("versioned.json");
+  };
+  const LearningPoint point{
+      .cases = 4, .error_mean = 0.5, .error_std = 0.1, .field_error = {{"pressure", 0.5}}};
+  const auto curve = to_json({.study = "s", .method = "linear", .points = {point}, .v1 = point, .v2 = point});
+  const auto cost = to_json(CostReport{});
+
+  EXPECT_NO_THROW((void)read_learning_curve(with_version(curve, "[1, 7]")));
+  EXPECT_NO_THROW((void)read_cost_report(with_version(cost, "[1, 7]")));
+  EXPECT_ERROR(InputError, "found elrom-learning-curve 2.0",
+               read_learning_curve(with_version(curve, "[2, 0]")));
+  EXPECT_ERROR(InputError, "found elrom-cost 2.0", read_cost_report(with_version(cost, "[2, 0]")));
+  EXPECT_ERROR(InputError, "expected elrom-learning-curve",
+               read_learning_curve(with_version(cost, "[1, 0]")));
+  EXPECT_ERROR(InputError, "expected elrom-cost", read_cost_report(with_version(curve, "[1, 0]")));
 }
 
 TEST(PowerLaw, RecoversTheLawThatMadeThePoints) {

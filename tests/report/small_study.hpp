@@ -29,7 +29,8 @@ class SmallStudy {
     write_store();
     write_models(main_method);
     base::write_text(folder_ / "timing.json",
-                     R"({"stages": {"model": {"seconds": 3}}, "methods": {"auto": 2.5, "nearest": 0.25}})");
+                     R"({"kind": "elrom-timing", "format": [1, 0],
+                         "stages": {"model": {"seconds": 3}}, "methods": {"auto": 2.5, "nearest": 0.25}})");
   }
   ~SmallStudy() { std::filesystem::remove_all(folder_); }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
@@ -45,7 +46,13 @@ class SmallStudy {
 
   void write_store() {
     const auto mesh = field::make_furnace_mesh({}, 4, 3, 5);
-    field::SnapshotWriter writer(folder_ / "snapshots.h5", mesh, schema(), fields());
+    const field::Furnace furnace{.name = "small",
+                                 .solid_density = 2400,
+                                 .packing_limit = 0.65,
+                                 .held_out = {"load_*", "rep*"},
+                                 .repeats = {"rep*"},
+                                 .openings = {{.inputs = "primary_air"}}};
+    field::SnapshotWriter writer(folder_ / "snapshots.h5", mesh, schema(), fields(), furnace);
     base::Random random{base::Seed(3)};
     for (std::size_t i = 0; i < n_training + 2; ++i) {
       const double load = 0.4 + 0.05 * static_cast<double>(i);

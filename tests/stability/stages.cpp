@@ -87,9 +87,8 @@ std::string check(const HardData& data) {
 }
 
 /// Small enough that every band of a hard field is searched and built within a second.
-study::Settings tiny_settings() {
-  study::Settings settings;
-  settings.threads = 1;
+networks::Settings tiny_settings() {
+  networks::Settings settings;
   settings.screen.builds = 2;
   settings.screen.max_epochs = 10;
   settings.search.trials = 2;
@@ -134,7 +133,7 @@ Fit fit_by(std::shared_ptr<const methods::Method> method) {
 
 std::unique_ptr<model::FieldModel> fit_blend(const field::FieldData& data,
                                              const methods::FitContext& context) {
-  std::vector<model::BlendModel::Part> parts;
+  std::vector<model::BlendModel::Member> parts;
   for (const std::string name : {"linear", "pod_rbf"})
     parts.push_back({{0.5}, fit_with(*methods::make_peer(name), data, context)});
   return std::make_unique<model::BlendModel>(std::move(parts));
@@ -150,7 +149,7 @@ std::unique_ptr<model::FieldModel> fit_mirror(const field::FieldData& data,
 }
 
 #if ELROM_HAS_TORCH
-std::shared_ptr<const methods::Method> networks(const study::Settings& settings) {
+std::shared_ptr<const methods::Method> networks(const networks::Settings& settings) {
   return std::make_shared<methods::NetworksMethod>(settings, torch::make_torch_trainer());
 }
 

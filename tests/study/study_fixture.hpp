@@ -11,15 +11,25 @@
 
 namespace elrom::study {
 
+inline field::Furnace small_furnace() {
+  return {
+      .name = "small",
+      .solid_density = 2400,
+      .packing_limit = 0.6,
+      .held_out = {"load_*"},
+      .openings = {{.inputs = "air", .low_m = 0, .high_m = 0}, {.inputs = "fuel", .low_m = 1, .high_m = 2}}};
+}
+
 /// Cases with loads from 0.4 to 1.0; field values are smooth functions of load, a second input, height and
 /// column. Every fifth case is named "load_*", as held-out cases are.
-inline void write_small_store(const std::filesystem::path& path, std::size_t n_cases, std::size_t first = 0) {
+inline void write_small_store(const std::filesystem::path& path, std::size_t n_cases, std::size_t first = 0,
+                              const std::optional<field::Furnace>& furnace = small_furnace()) {
   const auto mesh = field::make_furnace_mesh({}, 2, 3, 4);
   const field::InputSchema schema(
       {{"air", "kg/s", "kg/s"}, {"fuel", "kg/s", "kg/s"}, {"constant", "1", "1"}});
   const std::vector<field::FieldInfo> fields{field::field_info("pressure", "Pa"),
                                              field::field_info("gas_velocity_z", "m/s")};
-  field::SnapshotWriter writer(path, mesh, schema, fields);
+  field::SnapshotWriter writer(path, mesh, schema, fields, furnace);
   for (std::size_t i = first; i < first + n_cases; ++i) {
     base::Random random(base::Seed(11).derive(i));
     const double load = random.uniform(0.4, 1.0), fuel = random.uniform(1, 2);

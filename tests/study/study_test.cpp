@@ -12,10 +12,13 @@
 #include "elrom/model/predictor.hpp"
 #include "elrom/study/held_out.hpp"
 #include "study_fixture.hpp"
+#include "support/recording_log.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace elrom::study {
 namespace {
+
+using ::testing::HasSubstr;
 
 // "Trains" a network without hidden layers: the targets' mean as bias. Counts its calls; can be killed.
 class MeanTrainer final : public networks::Trainer {
@@ -56,6 +59,12 @@ class SmallStudy : public ::testing::Test {
   std::vector<FieldOutcome> run(const std::string& method) {
     return Study(folder.path(), settings(method), {.trainer = trainer}, silent_log(), {}).run();
   }
+  /// All that a run could take up again.
+  void forget() const {
+    for (const auto* name :
+         {"stages", "search.sqlite", "search.sqlite-wal", "search.sqlite-shm", "model.elrom", "peers"})
+      std::filesystem::remove_all(folder.path() / name);
+  }
   std::string bundle_digest() const { return base::sha256_file(folder.path() / "model.elrom"); }
   nlohmann::json timing() const {
     return nlohmann::json::parse(base::read_text(folder.path() / "timing.json"));
@@ -78,6 +87,83 @@ TEST_F(SmallStudy, RunWritesModelPeersSplitAndSettings) {
   const auto split = read_split(folder.path() / "split.json");
   EXPECT_EQ(split.held_out.size(), 4u);
   EXPECT_EQ(split.train.size() + split.validation.size() + split.test.size(), 16u);
+}
+
+TEST_F(SmallStudy, HeldOutCasesAreTheSettingsOrElseTheFurnaces) {
+  run("linear");
+  EXPECT_EQ(read_split(folder.path() / "split.json").held_out.size(), 4u);
+  EXPECT_THAT(base::read_text(folder.path() / "resolved.toml"), HasSubstr("held_out = [\"load_*\"]"));
+
+  base::write_text(folder.path() / "study.toml", "[split]\nheld_out = [\"train_3\"]\n");
+  run("linear");
+  EXPECT_THAT(read_split(folder.path() / "split.json").held_out, ::testing::ElementsAre("train_3"));
+}
+
+TEST_F(SmallStudy, TheBundlesCarryTheStoresFurnace) {
+  run("linear");
+
+  for (const auto* file : {"model.elrom", "peers/nearest.elrom"}) {
+    const auto furnace = model::BundleReader(folder.path() / file).furnace();
+    ASSERT_TRUE(furnace.has_value()) << file;
+    EXPECT_EQ(field::to_toml(*furnace), field::to_toml(small_furnace()));
+  }
+}
+
+// Nothing is trained anew for it, but the bundle is another one.
+TEST_F(SmallStudy, AnotherFurnaceOfTheStoreReachesTheBundle) {
+  run("linear");
+  auto other = small_furnace();
+  other.openings[1].high_m = 3;
+  write_small_store(folder.path() / "snapshots.h5", 0, 0, other);
+
+  run("linear");
+
+  EXPECT_EQ(model::BundleReader(folder.path() / "model.elrom").furnace()->openings[1].high_m, 3);
+}
+
+TEST_F(SmallStudy, WithoutAFurnaceWhatIsMissingIsTold) {
+  std::filesystem::remove(folder.path() / "snapshots.h5");
+  write_small_store(folder.path() / "snapshots.h5", 20, 0, std::nullopt);
+  test::RecordingLog log;
+
+  Study(folder.path(), settings("linear"), {.trainer = trainer}, log, {}).run();
+
+  EXPECT_TRUE(read_split(folder.path() / "split.json").held_out.empty());
+  EXPECT_THAT(log.text(), HasSubstr("no case is held out: the store has no furnace description"));
+  EXPECT_THAT(log.text(), HasSubstr("no mirror images: the store has no furnace description"));
+  EXPECT_FALSE(model::BundleReader(folder.path() / "model.elrom").furnace().has_value());
+}
+
+TEST_F(SmallStudy, AMirrorOfTheFurnaceThatDoesNotFitIsTold) {
+  auto furnace = small_furnace();
+  furnace.mirrors = {{.name = "across", .axis = 'y', .swap = {{"*_left", "*_right"}}}};
+  write_small_store(folder.path() / "snapshots.h5", 0, 0, furnace);
+  test::RecordingLog log;
+
+  const Study study(folder.path(), settings("linear"), {.trainer = trainer}, log, {});
+
+  EXPECT_TRUE(study.cases().mirrors.empty());
+  EXPECT_THAT(log.text(), HasSubstr("mirror 'across' of the furnace not used"));
+}
+
+TEST_F(SmallStudy, MirrorsAreTheFurnacesUnlessTheSettingsDeclareSome) {
+  auto furnace = small_furnace();
+  furnace.mirrors = {{.name = "across", .axis = 'y', .swap = {}}};
+  write_small_store(folder.path() / "snapshots.h5", 0, 0, furnace);
+  const auto names = [&](const Settings& used) {
+    const Study study(folder.path(), used, {.trainer = trainer}, silent_log(), {});
+    std::vector<std::string> found;
+    for (const auto& mirror : study.cases().mirrors) found.push_back(mirror.name);
+    return found;
+  };
+  auto own = settings("linear");
+  own.symmetry.mirrors = {{.name = "along", .axis = 'x', .swap = {}}};
+  auto off = settings("linear");
+  off.symmetry.enabled = false;
+
+  EXPECT_THAT(names(settings("linear")), ::testing::ElementsAre("across"));
+  EXPECT_THAT(names(own), ::testing::ElementsAre("along"));
+  EXPECT_THAT(names(off), ::testing::IsEmpty());
 }
 
 TEST_F(SmallStudy, ModelPredictsHeldOutCasesBetterThanTheirMean) {
@@ -126,10 +212,7 @@ TEST_F(SmallStudy, RunKilledInTheMiddleEndsWithTheSameBundle) {
   run("networks");
   const auto expected = bundle_digest();
   for (const int kill_at : {1, 5, 12}) {
-    for (const auto* name :
-         {"stages", "search.sqlite", "search.sqlite-wal", "search.sqlite-shm", "model.elrom"}) {
-      std::filesystem::remove_all(folder.path() / name);
-    }
+    forget();
     trainer->calls = 0;
     trainer->kill_at = kill_at;
     EXPECT_THROW(run("networks"), Interrupted);
@@ -144,8 +227,7 @@ TEST_F(SmallStudy, RunKilledInTheMiddleEndsWithTheSameBundle) {
 TEST_F(SmallStudy, ThreadsDoNotChangeTheBundle) {
   run("networks");
   const auto two = bundle_digest();
-  std::filesystem::remove_all(folder.path() / "stages");
-  std::filesystem::remove(folder.path() / "search.sqlite");
+  forget();
   auto one_thread = settings("networks");
   one_thread.threads = 1;
 
@@ -207,16 +289,40 @@ TEST_F(SmallStudy, SecondProcessIsRefusedByTheLock) {
 }
 
 TEST_F(SmallStudy, RetrainingReusesTheEarlierPlan) {
-  run("networks");
+  auto one_band = settings("networks");
+  one_band.bands.edges = {1e-9};  // whatever the new cases show
+  Study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {}).fit();
   write_small_store(folder.path() / "snapshots.h5", 4, 20);
-  trainer->calls = 0;
-  Study study(folder.path(), settings("networks"), {.trainer = trainer}, silent_log(), {});
+  Study study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {});
   study.reuse_plans_of(model::BundleReader(folder.path() / "model.elrom").info().cases);
 
   study.fit(folder.path() / "candidate.elrom");
 
   EXPECT_EQ(model::BundleReader(folder.path() / "candidate.elrom").info().cases.size(), 20u);
-  EXPECT_GT(trainer->calls, 0);
+  const auto stages = timing()["stages"];
+  for (const auto* stage : {"screen", "search"}) {
+    EXPECT_EQ(stages[stage]["computed"], 0) << stage;
+    EXPECT_GT(stages[stage]["reused"], 0) << stage;
+  }
+  EXPECT_GT(stages["build"]["computed"], 0);
+}
+
+// A model of reused plans is another one than a model of all cases' own.
+TEST_F(SmallStudy, ARunAfterRetrainingMakesItsOwnPlan) {
+  auto one_band = settings("networks");
+  one_band.bands.edges = {1e-9};
+  Study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {}).fit();
+  write_small_store(folder.path() / "snapshots.h5", 4, 20);
+  {
+    Study study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {});
+    study.reuse_plans_of(model::BundleReader(folder.path() / "model.elrom").info().cases);
+    study.fit(folder.path() / "candidate.elrom");
+  }
+
+  Study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {}).fit();
+
+  EXPECT_EQ(timing()["stages"]["model"]["reused"], 0);
+  EXPECT_GT(timing()["stages"]["search"]["computed"], 0);
 }
 
 }  // namespace

@@ -5,11 +5,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,18 +34,41 @@ class Stopwatch {
   Clock::time_point begin_ = Clock::now();
 };
 
+/// A command line. CLI11 is in benchmark.cpp alone: it costs every source that reads it five seconds.
+class CommandLine {
+ public:
+  explicit CommandLine(const std::string& what);
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  enum class Need { optional, required };
+  void add(const std::string& name, bool& value, const std::string& help);
+  void add(const std::string& name, int& value, const std::string& help);
+  void add(const std::string& name, std::string& value, const std::string& help, Need need = Need::optional);
+  void add(const std::string& name, std::filesystem::path& value, const std::string& help,
+           Need need = Need::optional);
+  /// values separated by commas
+  void add_list(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  /// one value each time the option is given
+  void add_repeated(const std::string& name, std::vector<std::string>& values, const std::string& help);
+
+  /// @return the exit status where the program ends here: --help, or a wrong command line
+  [[nodiscard]] std::optional<int> parse(int argc, char** argv);
+
+ private:
+  struct App;
+  std::unique_ptr<App> app_;
+};
+
 /// Options that every benchmark has.
 struct Arguments {
   std::filesystem::path json, store;
   bool small = false;
   int threads = base::available_threads();
 
-  void add_to(CLI::App& app, const std::string& store_help) {
-    app.add_option("--json", json, "write the figures to this file");
-    app.add_option("--store", store, store_help);
-    app.add_flag("--small", small, "a version that ends within a minute");
-    app.add_option("--threads", threads, "threads of the work that is measured")->capture_default_str();
-  }
+  void add_to(CommandLine& line, const std::string& store_help,
+              CommandLine::Need store_need = CommandLine::Need::optional);
 };
 
 /// A program of the same build, by its name.
@@ -89,26 +114,7 @@ inline std::filesystem::path generate_store(const std::filesystem::path& folder,
 }
 
 /// Body of a benchmark's main: parses, measures, prints and writes the figures.
-template <class Measure>
 int benchmark_main(const std::string& name, const std::string& what, const std::string& store_help, int argc,
-                   char** argv, const Measure& measure) {
-  return base::run_app(name, [&] {
-    CLI::App app(what);
-    Arguments arguments;
-    arguments.add_to(app, store_help);
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-    }
-    nlohmann::ordered_json json = measure(arguments);
-    json["program"] = program_version();
-    json["small"] = arguments.small;
-    const auto text = json.dump(1) + "\n";
-    std::fputs(text.c_str(), stdout);
-    if (!arguments.json.empty()) base::write_text(arguments.json, text);
-    return 0;
-  });
-}
+                   char** argv, const std::function<nlohmann::ordered_json(const Arguments&)>& measure);
 
 }  // namespace elrom::benchmark

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/base/random.hpp"
 #include "elrom/methods/method.hpp"
 #include "elrom/methods/peers.hpp"
@@ -16,6 +17,9 @@ class FakeMethod final : public methods::Method {
  public:
   FakeMethod(std::string name, MatrixF errors) : name_(std::move(name)), errors_(std::move(errors)) {}
   [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] std::string key(const std::string&) const override {
+    return base::digest_of_members(name_, errors_);
+  }
   [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const methods::FitContext& context) const override {

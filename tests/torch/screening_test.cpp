@@ -71,9 +71,7 @@ ScreeningData noisy_columns() {
     }
     data.plane.push_back(static_cast<std::int32_t>(r % n_planes));
     data.case_of.push_back(static_cast<std::int32_t>(i));
-    data.part.push_back(i % 10 < 7   ? Part::train
-                        : i % 10 < 9 ? Part::validation
-                                     : Part::test);
+    data.part.push_back(i % 10 < 7 ? Part::train : i % 10 < 9 ? Part::validation : Part::test);
   }
   return data;
 }

@@ -187,6 +187,43 @@ TEST(TorchTrainer, ACheckpointOfAnotherTrainingOrADamagedOneIsNotUsed) {
   EXPECT_EQ(weights_of(damaged.network), weights_of(first.network));
 }
 
+TEST(TorchTrainer, ACheckpointOfANewerMajorVersionIsNotUsed) {
+  const auto problem = smooth_problem();
+  const test::TemporaryFolder folder;
+  const auto trainer = make_torch_trainer();
+  const auto checkpoint = folder / "build.checkpoint";
+  // Epochs that a training runs with such a checkpoint of six.
+  const auto epochs_left = [&](const std::string& format) {
+    std::stop_source source;
+    Recorder stopper([&](int epoch) {
+      if (epoch == 6) source.request_stop();
+      return true;
+    });
+    EXPECT_THROW(
+        (void)trainer->train(problem, usual, {8, 8}, base::Seed(1), &stopper, source.get_token(), checkpoint),
+        Interrupted);
+    io::TensorFile marked;
+    {
+      const auto file = io::TensorFile::open(checkpoint);
+      for (const auto& [name, tensor] : file.tensors()) marked.set(name, tensor);
+      for (const auto& [key, text] : file.texts()) marked.set_text(key, text);
+      marked.set_text("format", format);
+      marked.write(checkpoint);
+    }
+    std::stop_source at_once;
+    at_once.request_stop();
+    Recorder heard;
+    EXPECT_THROW(
+        (void)trainer->train(problem, usual, {8, 8}, base::Seed(1), &heard, at_once.get_token(), checkpoint),
+        Interrupted);
+    std::filesystem::remove(checkpoint);
+    return 8 - heard.errors.size();
+  };
+
+  EXPECT_EQ(epochs_left("1.3"), 2u);
+  EXPECT_EQ(epochs_left("2.0"), 8u);
+}
+
 TEST(TorchTrainer, ADivergingRateIsBackedOffOnceAndThenLost) {
   networks::Hyperparameters wild = usual;
   wild.learning_rate = 1e30;

@@ -12,7 +12,7 @@ namespace {
 using test::random_matrix;
 using ::torch::Tensor;
 
-networks::TrainingProblem networks::make_problem(bool weighted) {
+networks::TrainingProblem noisy_problem(bool weighted) {
   networks::TrainingProblem problem;
   problem.train_inputs = random_matrix(40, 6, base::Seed(1));
   problem.train_targets = random_matrix(40, 5, base::Seed(2));
@@ -57,7 +57,7 @@ struct Case {
 class Step : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Step, EqualsAutogradAndLibTorchsAdamW) {
-  const auto problem = networks::make_problem(GetParam().weighted);
+  const auto problem = noisy_problem(GetParam().weighted);
   const networks::Hyperparameters hyperparameters{.learning_rate = 1e-2,
                                                   .n_layers = 2,
                                                   .n_units = 7,
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Step,
 
 // What a GPU runs, on the CPU: the same training to rounding, whatever it draws, weighs and stops by.
 TEST(Training, LibTorchsOperatorsDoWhatOurLoopsDo) {
-  const auto problem = networks::make_problem(true);
+  const auto problem = noisy_problem(true);
   const networks::Hyperparameters hyperparameters{
       .n_units = 9, .batch_size = 16, .weight_decay = 0.1, .dropout = 0.2};
   Training loops(problem, hyperparameters, base::Seed(9), {});
@@ -125,7 +125,7 @@ TEST(Training, DropoutKeepsTheExpectedValue) {
 }
 
 TEST(Training, EvaluationIsTheMeanOverTargetsThatCount) {
-  const auto problem = networks::make_problem(true);
+  const auto problem = noisy_problem(true);
   Training training(problem, {.n_layers = 0}, base::Seed(9), {});
 
   const double mse = training.evaluate();

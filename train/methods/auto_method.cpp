@@ -21,12 +21,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double sum_of_squares(const MatrixF& a) {
-  double sum = 0;
-  for (Index i = 0; i < a.rows(); ++i) sum += a.row(i).cast<double>().squaredNorm();
-  return sum;
-}
-
 /// Which fold each case is in, in the order of `cases`.
 std::vector<std::size_t> folds_of(std::span<const std::size_t> cases, const Folds& folds) {
   std::vector<std::size_t> found(cases.size());
@@ -79,7 +73,7 @@ class Contest {
       try {
         MatrixF errors = errors_of(method->cross_predict(data_, folds_, context));
         if (!errors.allFinite()) throw NumericalError(score.name + ": predictions are not finite");
-        score.nrmse = relative(sum_of_squares(errors));
+        score.nrmse = relative(math::sum_of_squares(errors));
         standing_.push_back(scores_.size());
         all_errors.push_back(std::move(errors));
       } catch (const NumericalError& error) {
@@ -206,8 +200,7 @@ class Contest {
     return errors;
   }
   [[nodiscard]] double relative(double squares) const {
-    const double all = variation_.sum();
-    return all > 0 ? std::sqrt(std::max(0.0, squares) / all) : 0;
+    return math::nrmse(std::max(0.0, squares), variation_.sum(), 0);
   }
   [[nodiscard]] Index n_standing() const { return static_cast<Index>(standing_.size()); }
 
@@ -246,8 +239,7 @@ std::vector<double> blend_weights(const MatrixXd& error_gram) {
 
 double cross_validated_nrmse(const field::FieldData& data, std::span<const std::size_t> cases,
                              const MatrixF& residuals) {
-  const double total = variation_of_columns(data, cases).sum();
-  return total > 0 ? std::sqrt(sum_of_squares(residuals) / total) : 0;
+  return math::nrmse(math::sum_of_squares(residuals), variation_of_columns(data, cases).sum(), 0);
 }
 
 AutoFit fit_auto(const field::FieldData& data, std::span<const std::size_t> cases,
@@ -259,7 +251,7 @@ AutoFit fit_auto(const field::FieldData& data, std::span<const std::size_t> case
   contest.run(context);
   AutoFit fit = contest.decide(options);
 
-  std::vector<model::BlendModel::Part> parts;
+  std::vector<model::BlendModel::Member> parts;
   std::string told;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const CandidateScore& score = fit.candidates[i];

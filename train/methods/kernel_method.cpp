@@ -7,6 +7,7 @@
 
 #include "derived_inputs.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/math/pod.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
@@ -35,13 +36,6 @@ MatrixXd cross_gram(const MatrixF& a, const MatrixF& b) {
     gram += left * right.transpose();
   }
   return gram;
-}
-
-/// Sum of squares over cases and cells.
-double energy_of(const MatrixF& values) {
-  double energy = 0;
-  for (Index i = 0; i < values.rows(); ++i) energy += values.row(i).cast<double>().squaredNorm();
-  return energy;
 }
 
 /// What one class of the field becomes: its modes, what predicts them, and the leave-one-out residuals.
@@ -82,6 +76,9 @@ class KernelMethod final : public Method {
  public:
   explicit KernelMethod(KernelOptions options) : options_(options) {}
   [[nodiscard]] std::string name() const override { return "kernel"; }
+  [[nodiscard]] std::string key(const std::string&) const override {
+    return base::digest_of_members(name(), options_);
+  }
   [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const override;
@@ -157,7 +154,7 @@ SymmetryPart KernelMethod::fit_symmetric(MatrixF centred, const MatrixD& z, cons
   }
   shrinkage.apply(centred, n_threads);
   make_modes(part, Smoother(part.group.kernel, z), centred, options_.most_modes,
-             options_.dropped * energy_of(part.residuals));
+             options_.dropped * math::sum_of_squares(part.residuals));
   return part;
 }
 
@@ -271,7 +268,7 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
 
   std::vector<SymmetryPart> parts{fit_symmetric(std::move(symmetric), features.z, used, data, threads)};
   MatrixF residuals = std::move(parts.front().residuals);
-  const double may_drop = options_.dropped * energy_of(residuals);
+  const double may_drop = options_.dropped * math::sum_of_squares(residuals);
   for (std::size_t c = 1; c < classes.size(); ++c) {
     if (context.stop.stop_requested()) throw Interrupted("kernel: stopped");
     MatrixF values = project(data, cases, classes[c], threads);

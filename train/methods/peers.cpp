@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/math/statistics.hpp"
@@ -33,15 +34,22 @@ TrainingInputs training_inputs(const field::FieldData& data, std::span<const std
 /// A peer whose fit() may run on several threads, so folds run side by side.
 class Peer : public Method {
  public:
-  explicit Peer(std::string name) : name_(std::move(name)) {}
+  Peer(std::string name, PeerOptions options) : name_(std::move(name)), options_(std::move(options)) {}
   [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] std::string key(const std::string&) const override {
+    return base::digest_of_members(name_, options_);
+  }
   [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
                                       const FitContext& context) const override {
     return cross_predict_by_fitting(*this, data, folds, context, true);
   }
 
+ protected:
+  [[nodiscard]] const PeerOptions& options() const { return options_; }
+
  private:
   std::string name_;
+  PeerOptions options_;
 };
 
 class Nearest final : public Peer {
@@ -75,11 +83,11 @@ VectorXd truncated_deviation(const MatrixF& values, std::span<const std::size_t>
 /// POD of the snapshots; what predicts the coefficients is the subclass's business.
 class PodPeer : public Peer {
  public:
-  PodPeer(std::string name, PeerOptions options) : Peer(std::move(name)), options_(std::move(options)) {}
+  using Peer::Peer;
   [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const final {
-    const math::Pod pod = math::make_pod(data.values, cases, options_.truncation, context.n_threads);
+    const math::Pod pod = math::make_pod(data.values, cases, options().truncation, context.n_threads);
     const TrainingInputs inputs = training_inputs(data, cases);
     if (pod.n_modes() == 0) return constant_field(pod.mean, inputs, data.cases->mesh.n_columns);
     return model::make_pod_model(name(), pod.mean, pod.modes, truncated_deviation(data.values, cases, pod),
@@ -91,7 +99,6 @@ class PodPeer : public Peer {
   /// @param coefficients of the training cases, zero mean, (n_cases, n_modes)
   [[nodiscard]] virtual std::shared_ptr<const model::CoefficientModel> fit_coefficients(
       const TrainingInputs& inputs, const Eigen::MatrixXd& coefficients, const FitContext& context) const = 0;
-  [[nodiscard]] const PeerOptions& options() const { return options_; }
 
  private:
   /// All cases are equal: one mode of zeros, since a model without modes has nothing to store.
@@ -102,8 +109,6 @@ class PodPeer : public Peer {
         inputs.scaler, MatrixD::Zero(inputs.scaler.size(), 1), VectorXd::Zero(1), VectorXd::Zero(1));
     return model::make_pod_model(name(), mean, MatrixF::Zero(1, mean.size()), {}, n_columns, std::move(none));
   }
-
-  PeerOptions options_;
 };
 
 class Linear final : public PodPeer {
@@ -177,7 +182,7 @@ const std::vector<std::string>& peer_names() {
 
 std::unique_ptr<Method> make_peer(std::string_view name, const PeerOptions& options) {
   const std::string own(name);
-  if (own == "nearest") return std::make_unique<Nearest>(own);
+  if (own == "nearest") return std::make_unique<Nearest>(own, options);
   if (own == "linear") return std::make_unique<Linear>(own, options);
   if (own == "pod_gp") return std::make_unique<Gp>(own, options, false);
   if (own == "pod_gp_per_mode") return std::make_unique<Gp>(own, options, true);

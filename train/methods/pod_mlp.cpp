@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/field/symmetry.hpp"
 #include "elrom/math/pod.hpp"
@@ -112,6 +113,9 @@ class PodMlp final : public Method {
   }
 
   [[nodiscard]] std::string name() const override { return "pod_mlp"; }
+  [[nodiscard]] std::string key(const std::string&) const override {
+    return base::digest_of_members(name(), options_, trainer_);
+  }
 
   [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "elrom/base/digest.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/networks/stage_files.hpp"
 
 namespace elrom::mpi {
@@ -10,33 +10,44 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The matrices of a problem under their names in a message, alike for writing and reading.
+// The matrices of a problem under their numbers in a message, alike for writing and reading.
 template <class Problem, class Work>
 void for_every_matrix(Problem& problem, const Work& work) {
-  work("train_inputs", problem.train_inputs);
-  work("train_targets", problem.train_targets);
-  work("train_weights", problem.train_weights);
-  work("validation_inputs", problem.validation_inputs);
-  work("validation_targets", problem.validation_targets);
-  work("validation_weights", problem.validation_weights);
+  int i = 0;
+  base::for_each_member(problem, [&](auto& matrix) { work("problem/" + std::to_string(i++), matrix); });
 }
 
-Json to_json(const networks::ScreenSettings& settings) {
-  return {{"n_units", settings.n_units},
-          {"batch_size", settings.batch_size},
-          {"learning_rate", settings.learning_rate},
-          {"max_epochs", settings.max_epochs},
-          {"patience", settings.patience}};
+// Every member in its order: both sides are the same program.
+template <class T>
+Json to_json(const T& value) {
+  if constexpr (std::is_arithmetic_v<T> || std::is_convertible_v<T, std::string>) {
+    return value;
+  } else if constexpr (std::is_enum_v<T>) {
+    return static_cast<std::int64_t>(value);
+  } else {
+    Json json = Json::array();
+    base::for_each_member(value, [&](const auto& member) { json.push_back(to_json(member)); });
+    return json;
+  }
 }
 
-networks::ScreenSettings screen_settings_of(const Json& json) {
-  networks::ScreenSettings settings;
-  settings.n_units = json.at("n_units");
-  settings.batch_size = json.at("batch_size");
-  settings.learning_rate = json.at("learning_rate");
-  settings.max_epochs = json.at("max_epochs");
-  settings.patience = json.at("patience");
-  return settings;
+template <class T>
+void from_json(const Json& json, T& value) {
+  if constexpr (std::is_arithmetic_v<T> || std::is_convertible_v<T, std::string>) {
+    json.get_to(value);
+  } else if constexpr (std::is_enum_v<T>) {
+    value = static_cast<T>(json.get<std::int64_t>());
+  } else {
+    std::size_t i = 0;
+    base::for_each_member(value, [&](auto& member) { from_json(json.at(i++), member); });
+  }
+}
+
+template <class T>
+T from_json(const Json& json) {
+  T value;
+  from_json(json, value);
+  return value;
 }
 
 }  // namespace
@@ -48,10 +59,9 @@ io::TensorFile message(const char* kind) {
 }
 
 io::TensorFile to_message(const TrainUnit& unit) {
-  auto unit_message = networks::to_file(unit.hyperparameters, 0);
-  unit_message.set_text("kind", kind::train);
-  unit_message.set_text("unit", Json{{"max_epochs", unit.budget.max_epochs},
-                                     {"patience", unit.budget.patience},
+  auto unit_message = message(kind::train);
+  unit_message.set_text("unit", Json{{"hyperparameters", to_json(unit.hyperparameters)},
+                                     {"budget", to_json(unit.budget)},
                                      {"seed", unit.seed.value()},
                                      {"monitored", unit.monitored}}
                                     .dump());
@@ -65,37 +75,30 @@ io::TensorFile to_message(const TrainUnit& unit) {
 TrainUnit train_unit_of(const io::TensorFile& message) {
   const auto json = Json::parse(message.text("unit"));
   const auto path = message.tensor("checkpoint").u8();
-  return {.hyperparameters = networks::hyperparameters_of(message),
-          .budget = {json.at("max_epochs"), json.at("patience")},
+  return {.hyperparameters = from_json<networks::Hyperparameters>(json.at("hyperparameters")),
+          .budget = from_json<networks::TrainingBudget>(json.at("budget")),
           .seed = base::Seed(json.at("seed").get<std::uint64_t>()),
           .monitored = json.at("monitored"),
           .checkpoint = {path.begin(), path.end()}};
 }
 
 void add_data(io::TensorFile& message, const networks::TrainingProblem& problem) {
-  for_every_matrix(problem, [&](const char* name, const MatrixF& matrix) {
+  for_every_matrix(problem, [&](const std::string& name, const MatrixF& matrix) {
     if (matrix.size() > 0) message.set(name, io::Tensor::copy(matrix));
   });
 }
 
-bool has_problem(const io::TensorFile& message) { return message.has("train_inputs"); }
+bool has_problem(const io::TensorFile& message) { return message.has("problem/0"); }
 
 networks::TrainingProblem problem_of(const io::TensorFile& message) {
   networks::TrainingProblem problem;
-  for_every_matrix(problem, [&](const char* name, MatrixF& matrix) {
+  for_every_matrix(problem, [&](const std::string& name, MatrixF& matrix) {
     if (message.has(name)) matrix = message.tensor(name).matrix();
   });
   return problem;
 }
 
-std::string digest_of(const networks::TrainingProblem& problem) {
-  base::Sha256 sha;
-  for_every_matrix(problem, [&](const char* name, const MatrixF& matrix) {
-    sha.add(name).add_value<std::int64_t>(matrix.rows()).add_value<std::int64_t>(matrix.cols());
-    sha.add(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size()))));
-  });
-  return sha.hex();
-}
+std::string digest_of(const networks::TrainingProblem& problem) { return base::digest_of_members(problem); }
 
 io::TensorFile to_message(const CrewUnit& unit) {
   auto unit_message = message(kind::crew);
@@ -128,7 +131,7 @@ std::unique_ptr<const Screening> screening_job_of(const io::TensorFile& message)
   const auto json = Json::parse(message.text("screening"));
   const auto plane = message.tensor("plane").i32(), case_of = message.tensor("case_of").i32();
   auto screening = std::make_unique<Screening>();
-  screening->settings = screen_settings_of(json.at("settings"));
+  screening->settings = from_json<networks::ScreenSettings>(json.at("settings"));
   screening->seed = base::Seed(json.at("seed").get<std::uint64_t>());
   screening->data = {.inputs = message.tensor("inputs").matrix(),
                      .targets = message.tensor("targets").matrix(),

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/math/gaussian_process.hpp"
 #include "elrom/math/ridge.hpp"
 #include "elrom/math/standardiser.hpp"
@@ -16,46 +16,42 @@ namespace {
 constexpr double least_relevance = 0.1;
 constexpr Eigen::Index n_components = 10;
 
-// Cases that have a training record, as rows of the data.
-std::vector<std::size_t> training_cases(std::span<const std::size_t> cases, const std::vector<Part>& part) {
-  const std::size_t n_planes = part.size() / cases.size();
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
+// Numbers of the cases that have a training record.
+std::vector<std::size_t> training_cases(const field::FieldRows& data, const std::vector<Part>& part) {
+  const std::size_t n_planes = data.n_planes();
+  std::vector<std::size_t> cases;
+  for (std::size_t i = 0; i < data.n_cases(); ++i) {
     const auto first = part.begin() + static_cast<std::ptrdiff_t>(i * n_planes);
-    if (std::count(first, first + static_cast<std::ptrdiff_t>(n_planes), Part::train) > 0)
-      rows.push_back(cases[i]);
+    if (std::count(first, first + static_cast<std::ptrdiff_t>(n_planes), Part::train) > 0) cases.push_back(i);
   }
-  check(!rows.empty(), "records: no training record");
-  return rows;
+  check(!cases.empty(), "records: no training record");
+  return cases;
 }
 
-MatrixF transformed_rows(const field::FieldData& data, std::span<const std::size_t> rows,
+MatrixF transformed_rows(const field::FieldRows& data, std::span<const std::size_t> cases,
                          const model::TargetTransform& transform) {
-  MatrixF values(static_cast<Eigen::Index>(rows.size()), data.values.cols());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    values.row(static_cast<Eigen::Index>(i)) =
-        data.values.row(static_cast<Eigen::Index>(rows[i])).unaryExpr([&](float y) {
-          return transform.apply(y);
-        });
-  }
+  MatrixF values(static_cast<Eigen::Index>(cases.size()),
+                 static_cast<Eigen::Index>(data.n_planes() * data.n_columns()));
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    std::ranges::transform(data.values(cases[i]), values.row(static_cast<Eigen::Index>(i)).data(),
+                           [&](float y) { return transform.apply(y); });
   return values;
 }
 
-MatrixD input_rows(const field::CaseSet& cases, std::span<const std::size_t> rows) {
-  MatrixD inputs(static_cast<Eigen::Index>(rows.size()), cases.inputs.cols());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    inputs.row(static_cast<Eigen::Index>(i)) = cases.inputs.row(static_cast<Eigen::Index>(rows[i]));
-  }
+MatrixD input_rows(const field::FieldRows& data, std::span<const std::size_t> cases) {
+  MatrixD inputs(static_cast<Eigen::Index>(cases.size()), static_cast<Eigen::Index>(data.n_inputs()));
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    std::ranges::copy(data.inputs(cases[i]), inputs.row(static_cast<Eigen::Index>(i)).data());
   return inputs;
 }
 
-model::TargetTransform fit_transform(const field::FieldData& data, std::span<const std::size_t> rows,
+model::TargetTransform fit_transform(const field::FieldRows& data, std::span<const std::size_t> cases,
                                      model::TransformKind kind) {
   std::vector<float> values;
   if (kind != model::TransformKind::none) {
-    for (const auto row : rows) {
-      const auto* begin = data.values.row(static_cast<Eigen::Index>(row)).data();
-      values.insert(values.end(), begin, begin + data.values.cols());
+    for (const auto i : cases) {
+      const auto own = data.values(i);
+      values.insert(values.end(), own.begin(), own.end());
     }
   }
   return model::TargetTransform::fit(kind, values);
@@ -64,15 +60,15 @@ model::TargetTransform fit_transform(const field::FieldData& data, std::span<con
 // Fills the record table case by case, image by image.
 class Filler {
  public:
-  Filler(const field::FieldData& data, RecordSet& set, std::size_t n_records)
+  Filler(const field::FieldRows& data, RecordSet& set, std::size_t n_records)
       : data_(data),
         set_(set),
-        n_columns_(static_cast<Eigen::Index>(data.cases->mesh.n_columns)),
+        n_columns_(static_cast<Eigen::Index>(data.n_columns())),
         encoding_(set.planes.size()),
         scaled_(set.inputs.size()),
-        image_(static_cast<std::size_t>(data.values.cols())) {
+        image_(data.n_planes() * data.n_columns()) {
     auto& records = set.records;
-    records.n_planes = data.cases->mesh.n_planes;
+    records.n_planes = data.n_planes();
     const auto n_in = static_cast<Eigen::Index>(set.inputs.size() + set.planes.size());
     records.inputs.resize(static_cast<Eigen::Index>(n_records), n_in);
     records.targets.resize(static_cast<Eigen::Index>(n_records), n_columns_);
@@ -80,11 +76,11 @@ class Filler {
 
   /// @param mirror nullptr: the case itself @param parts of its planes @param only_training leaves other
   /// records out
-  void add(std::size_t row, std::int32_t i_case, const field::Mirror* mirror, const Part* parts,
-           bool only_training) {
-    load_image(row, mirror);
+  void add(std::size_t i_case, const field::Mirror* mirror, const Part* parts, bool only_training) {
+    load_image(i_case, mirror);
     for (std::size_t plane = 0; plane < set_.records.n_planes; ++plane) {
-      if (!only_training || parts[plane] == Part::train) add_plane(plane, i_case, parts[plane]);
+      if (!only_training || parts[plane] == Part::train)
+        add_plane(plane, static_cast<std::int32_t>(i_case), parts[plane]);
     }
   }
   void end() {
@@ -94,16 +90,17 @@ class Filler {
   }
 
  private:
-  void load_image(std::size_t row, const field::Mirror* mirror) {
-    const auto inputs = data_.cases->inputs.row(static_cast<Eigen::Index>(row));
-    std::vector<double> values(inputs.data(), inputs.data() + inputs.size());
-    const auto* from = data_.values.row(static_cast<Eigen::Index>(row)).data();
+  void load_image(std::size_t i_case, const field::Mirror* mirror) {
+    const auto inputs = data_.inputs(i_case);
+    std::vector<double> values(inputs.begin(), inputs.end());
+    const auto from = data_.values(i_case);
     if (mirror == nullptr) {
-      std::copy_n(from, image_.size(), image_.begin());
+      std::ranges::copy(from, image_.begin());
     } else {
       values = mirror->apply_to_inputs(values);
-      const auto sign = static_cast<float>(mirror->field_sign(data_.info.parity));
-      for (std::size_t c = 0; c < image_.size(); ++c) image_[c] = sign * from[mirror->cell_from[c]];
+      const auto sign = static_cast<float>(mirror->field_sign(data_.info().parity));
+      for (std::size_t c = 0; c < image_.size(); ++c)
+        image_[c] = sign * from[static_cast<std::size_t>(mirror->cell_from[c])];
     }
     set_.inputs.apply(values, scaled_);
   }
@@ -126,7 +123,7 @@ class Filler {
     ++next_;
   }
 
-  const field::FieldData& data_;
+  const field::FieldRows& data_;
   RecordSet& set_;
   Eigen::Index n_columns_, next_ = 0;
   std::vector<float> encoding_, scaled_, image_;
@@ -210,35 +207,46 @@ std::vector<double> gp_relevance(const MatrixD& inputs, const Eigen::MatrixXd& c
 
 }  // namespace
 
-RecordSet make_records(const field::FieldData& data, std::span<const std::size_t> cases,
-                       const std::vector<Part>& part, const RecordOptions& options) {
-  const auto& shared = *data.cases;
-  const auto n_planes = shared.mesh.n_planes;
-  check(part.size() == cases.size() * n_planes, "records: a part for every record");
-  const auto building = training_cases(cases, part);
+RecordSet make_records(const field::FieldRows& data, const std::vector<Part>& part,
+                       const RecordOptions& options) {
+  const auto n_planes = data.n_planes();
+  check(part.size() == data.n_cases() * n_planes, "records: a part for every record");
+  const auto building = training_cases(data, part);
   RecordSet set;
   set.transform = fit_transform(data, building, options.transform);
   {
     const auto values = transformed_rows(data, building, set.transform);
-    const auto inputs = input_rows(shared, building);
+    const auto inputs = input_rows(data, building);
     set.inputs = model::InputScaler::fit(inputs, relevance_of(options.relevance, inputs, values));
-    set.outputs = model::OutputScaler::fit(values, shared.mesh.n_columns, options.scale_cells);
+    set.outputs = model::OutputScaler::fit(values, data.n_columns(), options.scale_cells);
   }
   set.planes = {.kind = options.encoding, .n_planes = n_planes};
 
   const auto group = options.mirrors
-                         ? field::symmetry_group(shared.mirrors, shared.schema.size(), shared.mesh.n_cells())
+                         ? field::symmetry_group(data.mirrors(), data.n_inputs(), n_planes * data.n_columns())
                          : std::vector<field::Mirror>{};
   Filler filler(data, set, part.size() * std::max<std::size_t>(group.size(), 1));
-  for (std::size_t i = 0; i < cases.size(); ++i)
-    filler.add(cases[i], static_cast<std::int32_t>(i), nullptr, &part[i * n_planes], false);
-  for (std::size_t g = 1; g < group.size(); ++g) {
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      filler.add(cases[i], static_cast<std::int32_t>(i), &group[g], &part[i * n_planes], true);
-    }
-  }
+  for (std::size_t i = 0; i < data.n_cases(); ++i) filler.add(i, nullptr, &part[i * n_planes], false);
+  for (std::size_t g = 1; g < group.size(); ++g)
+    for (std::size_t i = 0; i < data.n_cases(); ++i) filler.add(i, &group[g], &part[i * n_planes], true);
   filler.end();
   return set;
+}
+
+RecordSource::RecordSource(const field::FieldData& data, std::span<const std::size_t> cases,
+                           RecordRecipe recipe)
+    : data_(data, cases, recipe.options.mirrors),
+      recipe_(std::move(recipe)),
+      key_(base::digest_of_members(data_, recipe_)) {}
+
+const RecordSet& RecordSource::get() const {
+  std::call_once(once_, [&] {
+    std::vector<double> loads;
+    for (std::size_t i = 0; i < data_.n_cases(); ++i) loads.push_back(data_.load(i));
+    set_ = make_records(data_, split_records(loads, data_.n_planes(), recipe_.parts, recipe_.seed),
+                        recipe_.options);
+  });
+  return set_;
 }
 
 TrainingProblem make_problem(const ScreeningData& records, const Band& band) {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/networks/search.hpp"
 
@@ -48,37 +50,51 @@ std::vector<double> even_bins(const std::vector<double>& range, std::size_t n) {
   return values;
 }
 
+// Values of each hyperparameter that is searched; the others stay what they are.
+std::map<std::string_view, std::vector<double>> searched(const SearchSettings& settings) {
+  std::map<std::string_view, std::vector<double>> values{
+      {"learning_rate", log_bins(settings.learning_rate, 16)},
+      {"n_layers", whole_bins(settings.n_layers)},
+      {"n_units", size_bins(settings.n_units, std::sqrt(2.0))},
+      {"batch_size", size_bins(settings.batch_size, 2.0)}};
+  if (settings.regularise) {
+    values["weight_decay"] = log_bins(settings.weight_decay, 3);
+    values["dropout"] = even_bins(settings.dropout, 7);
+  }
+  return values;
+}
+
 }  // namespace
 
 SearchSpace::SearchSpace(const SearchSettings& settings, model::Activation activation)
     : activation_(activation) {
-  using H = Hyperparameters;
-  axes_.push_back({log_bins(settings.learning_rate, 16), [](H& h, double v) { h.learning_rate = v; }});
-  axes_.push_back({whole_bins(settings.n_layers), [](H& h, double v) { h.n_layers = static_cast<int>(v); }});
-  axes_.push_back(
-      {size_bins(settings.n_units, std::sqrt(2.0)), [](H& h, double v) { h.n_units = static_cast<int>(v); }});
-  axes_.push_back(
-      {size_bins(settings.batch_size, 2.0), [](H& h, double v) { h.batch_size = static_cast<int>(v); }});
-  if (!settings.regularise) return;
-  axes_.push_back({log_bins(settings.weight_decay, 3), [](H& h, double v) { h.weight_decay = v; }});
-  axes_.push_back({even_bins(settings.dropout, 7), [](H& h, double v) { h.dropout = v; }});
+  auto values = searched(settings);
+  for (const auto* name : hyperparameter_names)
+    if (const auto own = values.find(name); own != values.end())
+      axes_.push_back({name, std::move(own->second)});
+  check(axes_.size() == values.size(), "search space: what is searched is a hyperparameter");
 }
 
 Hyperparameters SearchSpace::decode(std::span<const double> point) const {
   Hyperparameters h;
   h.activation = activation_;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  std::size_t i = 0;
+  for_each_hyperparameter(h, [&](std::string_view name, auto& value) {
+    if (i == axes_.size() || axes_[i].name != name) return;
     const auto n = axes_[i].values.size();
     const double x = std::isfinite(point[i]) ? std::clamp(point[i], 0.0, 1.0) : 0.5;
-    axes_[i].set(h, axes_[i].values[std::min(n - 1, static_cast<std::size_t>(x * static_cast<double>(n)))]);
-  }
+    const double chosen =
+        axes_[i].values[std::min(n - 1, static_cast<std::size_t>(x * static_cast<double>(n)))];
+    value = static_cast<std::remove_reference_t<decltype(value)>>(chosen);
+    ++i;
+  });
   return h;
 }
 
 std::string SearchSpace::key(const Hyperparameters& h) {
-  return base::number(h.learning_rate) + " " + std::to_string(h.n_layers) + " " + std::to_string(h.n_units) +
-         " " + std::to_string(h.batch_size) + " " + base::number(h.weight_decay) + " " +
-         base::number(h.dropout) + " " + std::string(model::name_of(h.activation));
+  std::vector<std::string> parts;
+  for_each_hyperparameter(h, [&](std::string_view, const auto& value) { parts.push_back(text_of(value)); });
+  return base::join(parts, " ");
 }
 
 std::vector<double> SearchSpace::initial_step() const {

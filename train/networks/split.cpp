@@ -74,16 +74,16 @@ std::vector<Part> split_cases(std::span<const double> loads, std::span<const dou
   return parts;
 }
 
-std::vector<Part> split_records(std::span<const double> loads, std::size_t n_planes,
-                                const SplitSettings& settings, base::Seed seed) {
+std::vector<Part> split_records(std::span<const double> loads, std::size_t n_planes, const PartRule& rule,
+                                base::Seed seed) {
   std::vector<Part> records(loads.size() * n_planes);
-  if (settings.by == "record") {
+  if (rule.by == "record") {
     // The record's number stands for its load: strata are runs of records, dealt out without regard to cases.
     std::vector<double> rank(records.size());
     std::iota(rank.begin(), rank.end(), 0.0);
-    return split_cases(rank, settings.fractions, seed);
+    return split_cases(rank, rule.fractions, seed);
   }
-  const auto cases = split_cases(loads, settings.fractions, seed);
+  const auto cases = split_cases(loads, rule.fractions, seed);
   for (std::size_t r = 0; r < records.size(); ++r) records[r] = cases[r / n_planes];
   return records;
 }

@@ -51,26 +51,15 @@ TrainingResult training_of(const io::TensorFile& file) {
 
 io::TensorFile to_file(const Hyperparameters& h, double validation_mse) {
   io::TensorFile file;
-  file.set_text("learning_rate", base::number(h.learning_rate));
-  file.set_text("n_layers", std::to_string(h.n_layers));
-  file.set_text("n_units", std::to_string(h.n_units));
-  file.set_text("batch_size", std::to_string(h.batch_size));
-  file.set_text("weight_decay", base::number(h.weight_decay));
-  file.set_text("dropout", base::number(h.dropout));
-  file.set_text("activation", std::string(model::name_of(h.activation)));
+  for_each_hyperparameter(h,
+                          [&](const char* name, const auto& value) { file.set_text(name, text_of(value)); });
   file.set_text("validation_mse", base::number(validation_mse));
   return file;
 }
 
 Hyperparameters hyperparameters_of(const io::TensorFile& file) {
   Hyperparameters h;
-  h.learning_rate = number_of(file, "learning_rate");
-  h.n_layers = static_cast<int>(number_of(file, "n_layers"));
-  h.n_units = static_cast<int>(number_of(file, "n_units"));
-  h.batch_size = static_cast<int>(number_of(file, "batch_size"));
-  h.weight_decay = number_of(file, "weight_decay");
-  h.dropout = number_of(file, "dropout");
-  h.activation = model::activation_of(file.text("activation"));
+  for_each_hyperparameter(h, [&](const char* name, auto& value) { read_text(file.text(name), value); });
   return h;
 }
 

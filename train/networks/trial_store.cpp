@@ -1,67 +1,14 @@
 #include "elrom/networks/trial_store.hpp"
 
-#include <sqlite3.h>
-
 #include <map>
 #include <mutex>
 
-#include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/sql/database.hpp"
+#include "trial_columns.hpp"
 
 namespace elrom::networks {
 namespace {
-
-constexpr int format_major = 1;
-
-class Statement {
- public:
-  Statement(sqlite3* database, const std::string& where, const char* sql)
-      : database_(database), where_(where) {
-    require(sqlite3_prepare_v2(database, sql, -1, &statement_, nullptr) == SQLITE_OK);
-  }
-  ~Statement() { sqlite3_finalize(statement_); }
-  Statement(const Statement&) = delete;
-  Statement& operator=(const Statement&) = delete;
-
-  Statement& bind(int i, const std::string& text) {
-    require(sqlite3_bind_text(statement_, i, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT) ==
-            SQLITE_OK);
-    return *this;
-  }
-  Statement& bind(int i, int value) {
-    require(sqlite3_bind_int(statement_, i, value) == SQLITE_OK);
-    return *this;
-  }
-  Statement& bind(int i, double value) {
-    require(sqlite3_bind_double(statement_, i, value) == SQLITE_OK);
-    return *this;
-  }
-  /// @return whether there is a row
-  bool next() {
-    const int result = sqlite3_step(statement_);
-    require(result == SQLITE_ROW || result == SQLITE_DONE);
-    return result == SQLITE_ROW;
-  }
-  [[nodiscard]] int whole(int i) const { return sqlite3_column_int(statement_, i); }
-  [[nodiscard]] double real(int i) const { return sqlite3_column_double(statement_, i); }
-  [[nodiscard]] std::string text(int i) const {
-    const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, i));
-    return text == nullptr ? std::string() : std::string(text);
-  }
-
- private:
-  void require(bool ok) const {
-    if (!ok)
-      throw InputError({.what = "trial store cannot be used",
-                        .where = where_,
-                        .found = sqlite3_errmsg(database_),
-                        .advice = "remove the file to search anew"});
-  }
-  sqlite3* database_;
-  const std::string& where_;
-  sqlite3_stmt* statement_ = nullptr;
-};
 
 std::string rungs_text(const std::vector<double>& rungs) {
   std::vector<std::string> parts;
@@ -76,79 +23,50 @@ std::vector<double> rungs_of(const std::string& text) {
   return rungs;
 }
 
-constexpr const char* columns =
-    "learning_rate, n_layers, n_units, batch_size, weight_decay, dropout, activation, i_seed, value, epochs, "
-    "pruned, "
-    "diverged, seconds, rungs";
+const std::vector<std::string> hyperparameter_columns(hyperparameter_names.begin(),
+                                                      hyperparameter_names.end());
+const std::string columns =
+    base::join(hyperparameter_columns, ", ") + ", i_seed, value, epochs, pruned, diverged, seconds, rungs";
 
-Trial trial_of(const Statement& row, int first) {
+const std::string schema =
+    "CREATE TABLE IF NOT EXISTS trials (number INTEGER PRIMARY KEY, search TEXT NOT NULL, name TEXT, key "
+    "TEXT NOT NULL, " +
+    base::join(column_declarations(), ", ") +
+    ", i_seed INTEGER NOT NULL, value REAL NOT NULL, epochs INTEGER, pruned INTEGER, diverged INTEGER, "
+    "seconds REAL, rungs TEXT, UNIQUE (search, key, i_seed))";
+
+Trial trial_of(const sql::Statement& row, int first) {
   Trial trial;
-  auto& h = trial.hyperparameters;
-  h.learning_rate = row.real(first);
-  h.n_layers = row.whole(first + 1);
-  h.n_units = row.whole(first + 2);
-  h.batch_size = row.whole(first + 3);
-  h.weight_decay = row.real(first + 4);
-  h.dropout = row.real(first + 5);
-  h.activation = model::activation_of(row.text(first + 6));
-  trial.i_seed = row.whole(first + 7);
-  trial.value = row.real(first + 8);
-  trial.epochs = row.whole(first + 9);
-  trial.pruned = row.whole(first + 10) != 0;
-  trial.diverged = row.whole(first + 11) != 0;
-  trial.seconds = row.real(first + 12);
-  trial.rungs = rungs_of(row.text(first + 13));
+  const int rest = read_hyperparameters(row, first, trial.hyperparameters);
+  trial.i_seed = static_cast<int>(row.integer(rest));
+  trial.value = row.real(rest + 1);
+  trial.epochs = static_cast<int>(row.integer(rest + 2));
+  trial.pruned = row.integer(rest + 3) != 0;
+  trial.diverged = row.integer(rest + 4) != 0;
+  trial.seconds = row.real(rest + 5);
+  trial.rungs = rungs_of(row.text(rest + 6));
   return trial;
 }
 
 }  // namespace
 
 struct TrialStore::Impl {
-  sqlite3* database = nullptr;
-  std::string where;
+  explicit Impl(const std::filesystem::path& path) : database(path, io::kinds::trials, schema) {}
+  sql::Database database;
   mutable std::mutex mutex;
 
-  ~Impl() { sqlite3_close(database); }
-  void run(const char* sql) const { Statement(database, where, sql).next(); }
-  void check_version() const {
-    Statement row(database, where, "SELECT value FROM about WHERE key = 'format_major'");
-    const int found = row.next() ? row.whole(0) : 0;
-    if (found == format_major) return;
-    throw InputError({.what = "trial store of another version",
-                      .where = where,
-                      .found = std::to_string(found),
-                      .expected = std::to_string(format_major),
-                      .advice = "remove the file to search anew"});
+  // A file from before a hyperparameter was searched holds trials at its default.
+  void add_missing_columns() const {
+    for (const auto& name : hyperparameter_columns) {
+      auto column = database.prepare("SELECT 1 FROM pragma_table_info('trials') WHERE name = ?");
+      if (!column.bind(1, name).next())
+        database.run("ALTER TABLE trials ADD COLUMN " + declaration_with_default(name));
+    }
   }
 };
 
-TrialStore::TrialStore(const std::filesystem::path& path) : impl_(std::make_unique<Impl>()) {
-  impl_->where = path.string();
-  if (sqlite3_open(path.c_str(), &impl_->database) != SQLITE_OK) {
-    throw InputError({.what = "trial store cannot be opened",
-                      .where = path.string(),
-                      .found = sqlite3_errmsg(impl_->database)});
-  }
-  sqlite3_busy_timeout(impl_->database, 10000);
-  impl_->run("PRAGMA journal_mode = WAL");
-  impl_->run("PRAGMA synchronous = NORMAL");
-  impl_->run("BEGIN IMMEDIATE");
-  impl_->run("CREATE TABLE IF NOT EXISTS about (key TEXT PRIMARY KEY, value)");
-  impl_->run(
-      "CREATE TABLE IF NOT EXISTS trials (number INTEGER PRIMARY KEY, search TEXT NOT NULL, name TEXT, key "
-      "TEXT NOT NULL, "
-      "learning_rate REAL, n_layers INTEGER, n_units INTEGER, batch_size INTEGER, weight_decay REAL, dropout "
-      "REAL, "
-      "activation TEXT, i_seed INTEGER NOT NULL, value REAL NOT NULL, epochs INTEGER, pruned INTEGER, "
-      "diverged INTEGER, "
-      "seconds REAL, rungs TEXT, UNIQUE (search, key, i_seed))");
-  Statement(impl_->database, impl_->where,
-            "INSERT OR IGNORE INTO about VALUES ('kind', 'elrom-trials'), ('format_major', 1), "
-            "('format_minor', 0), ('program', ?)")
-      .bind(1, program_version())
-      .next();
-  impl_->run("COMMIT");
-  impl_->check_version();
+TrialStore::TrialStore(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {
+  impl_->add_missing_columns();
 }
 
 TrialStore::~TrialStore() = default;
@@ -157,7 +75,7 @@ std::optional<Trial> TrialStore::find(const std::string& search, const std::stri
   const std::scoped_lock lock(impl_->mutex);
   const auto sql =
       std::string("SELECT ") + columns + " FROM trials WHERE search = ? AND key = ? AND i_seed = ?";
-  Statement row(impl_->database, impl_->where, sql.c_str());
+  auto row = impl_->database.prepare(sql);
   row.bind(1, search).bind(2, key).bind(3, i_seed);
   if (!row.next()) return std::nullopt;
   return trial_of(row, 0);
@@ -167,33 +85,26 @@ void TrialStore::add(const std::string& search, const std::string& name, const s
                      const Trial& trial) {
   const std::scoped_lock lock(impl_->mutex);
   const auto sql = std::string("INSERT OR REPLACE INTO trials (search, name, key, ") + columns +
-                   ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-  const auto& h = trial.hyperparameters;
-  Statement(impl_->database, impl_->where, sql.c_str())
-      .bind(1, search)
-      .bind(2, name)
-      .bind(3, key)
-      .bind(4, h.learning_rate)
-      .bind(5, h.n_layers)
-      .bind(6, h.n_units)
-      .bind(7, h.batch_size)
-      .bind(8, h.weight_decay)
-      .bind(9, h.dropout)
-      .bind(10, std::string(model::name_of(h.activation)))
-      .bind(11, trial.i_seed)
-      .bind(12, trial.value)
-      .bind(13, trial.epochs)
-      .bind(14, trial.pruned ? 1 : 0)
-      .bind(15, trial.diverged ? 1 : 0)
-      .bind(16, trial.seconds)
-      .bind(17, rungs_text(trial.rungs))
+                   ") VALUES (?, ?, ?, " +
+                   base::join(std::vector<std::string>(hyperparameter_columns.size(), "?"), ", ") +
+                   ", ?, ?, ?, ?, ?, ?, ?)";
+  auto row = impl_->database.prepare(sql);
+  row.bind(1, search).bind(2, name).bind(3, key);
+  const int rest = bind_hyperparameters(row, 4, trial.hyperparameters);
+  row.bind(rest, trial.i_seed)
+      .bind(rest + 1, trial.value)
+      .bind(rest + 2, trial.epochs)
+      .bind(rest + 3, trial.pruned ? 1 : 0)
+      .bind(rest + 4, trial.diverged ? 1 : 0)
+      .bind(rest + 5, trial.seconds)
+      .bind(rest + 6, rungs_text(trial.rungs))
       .next();
 }
 
 std::vector<TrialStore::Search> TrialStore::searches() const {
   const std::scoped_lock lock(impl_->mutex);
   const auto sql = std::string("SELECT search, name, ") + columns + " FROM trials ORDER BY number";
-  Statement row(impl_->database, impl_->where, sql.c_str());
+  auto row = impl_->database.prepare(sql);
   std::vector<Search> result;
   std::map<std::string, std::size_t> place;
   while (row.next()) {

@@ -30,7 +30,7 @@ int train(const StudyArguments& arguments, bool with_peers, const study::Setting
   return 0;
 }
 
-void add_training(CLI::App& app, Run& run, const std::string& name, const std::string& what,
+void add_training(CLI::App& app, Work& run, const std::string& name, const std::string& what,
                   bool with_peers) {
   auto* command = app.add_subcommand(name, what);
   auto arguments = std::make_shared<StudyArguments>();
@@ -47,12 +47,12 @@ void add_training(CLI::App& app, Run& run, const std::string& name, const std::s
 
 }  // namespace
 
-void add_run(CLI::App& app, Run& run) {
+void add_run(CLI::App& app, Work& run) {
   add_training(app, run, "run",
                "every stage: split, screen, band, search, fit, peers; writes model.elrom and peers/", true);
 }
 
-void add_fit(CLI::App& app, Run& run) {
+void add_fit(CLI::App& app, Work& run) {
   add_training(app, run, "fit",
                "the model without its peers (what it needs of the earlier stages is made first)", false);
 }

@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/study/held_out.hpp"
+#include "elrom/study/timing.hpp"
 
 namespace elrom::programs {
 namespace {
@@ -62,17 +61,14 @@ void print_bundles(const path& folder) {
 }
 
 void print_timing(const path& folder) {
-  if (!std::filesystem::exists(folder / "timing.json")) return;
-  const auto json = nlohmann::json::parse(base::read_text(folder / "timing.json"), nullptr, false);
-  if (!json.is_object())
-    throw InputError({.what = "no valid timing file", .where = (folder / "timing.json").string()});
-  fmt::print("last run   {}, {} GiB resident at most\n", base::duration(json.value("total_seconds", 0.0)),
-             base::rounded(json.value("peak_rss_gib", 0.0), 3));
+  if (const auto timing = study::read_timing(folder / "timing.json"))
+    fmt::print("last run   {}, {} GiB resident at most\n", base::duration(timing->total_seconds),
+               base::rounded(timing->peak_rss_gib, 3));
 }
 
 }  // namespace
 
-void add_status(CLI::App& app, Run& run) {
+void add_status(CLI::App& app, Work& run) {
   auto* command =
       app.add_subcommand("status", "what a study holds: cases, kept stages, trials, bundles, time");
   auto folder = std::make_shared<path>();

@@ -34,12 +34,12 @@ using StudyWork = std::function<int(const study::Settings& settings, const study
 [[nodiscard]] int in_study(const StudyArguments& arguments, const StudyWork& work);
 
 /// A subcommand sets `run` when it is chosen; its value is the exit status.
-using Run = std::function<int()>;
-void add_run(CLI::App& app, Run& run);
-void add_screen(CLI::App& app, Run& run);
-void add_search(CLI::App& app, Run& run);
-void add_fit(CLI::App& app, Run& run);
-void add_retrain(CLI::App& app, Run& run);
-void add_status(CLI::App& app, Run& run);
+using Work = std::function<int()>;
+void add_run(CLI::App& app, Work& run);
+void add_screen(CLI::App& app, Work& run);
+void add_search(CLI::App& app, Work& run);
+void add_fit(CLI::App& app, Work& run);
+void add_retrain(CLI::App& app, Work& run);
+void add_status(CLI::App& app, Work& run);
 
 }  // namespace elrom::programs

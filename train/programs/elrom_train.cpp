@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
     CLI::App app("Trains reduced-order models of a furnace from a snapshot store.");
     app.set_version_flag("--version", elrom::program_version());
     app.require_subcommand(1);
-    elrom::programs::Run run;
+    elrom::programs::Work run;
     elrom::programs::add_run(app, run);
     elrom::programs::add_screen(app, run);
     elrom::programs::add_search(app, run);

@@ -6,14 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/text.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/io/file_kind.hpp"
 #include "elrom/report/accuracy.hpp"
 
 namespace elrom::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr FormatVersion format{1, 0};
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
@@ -119,20 +118,18 @@ Json method_node(const MethodSummary& method) {
 }  // namespace
 
 std::string to_json(const AccuracyReport& report) {
-  Json root{{"kind", "elrom-accuracy"},
-            {"format", {format.major, format.minor}},
-            {"program", program_version()},
-            {"created", report.created},
-            {"study", report.study.name},
-            {"headline", headline(report)},
-            {"training_cases", report.n_training},
-            {"planes", report.n_planes},
-            {"columns", report.n_columns},
-            {"mean_nrmse", number(report.methods.front().mean_nrmse)},
-            {"gain_over_best_single_peer", number(report.gain())},
-            {"gain_without_noise", number(report.gain_without_noise())},
-            {"fields_at_or_below_every_simple_peer", report.fields_won()},
-            {"repeated_runs", report.repeats}};
+  auto root = io::json_head<Json>(io::kinds::accuracy);
+  root.update({{"created", report.created},
+               {"study", report.study.name},
+               {"headline", headline(report)},
+               {"training_cases", report.n_training},
+               {"planes", report.n_planes},
+               {"columns", report.n_columns},
+               {"mean_nrmse", number(report.methods.front().mean_nrmse)},
+               {"gain_over_best_single_peer", number(report.gain())},
+               {"gain_without_noise", number(report.gain_without_noise())},
+               {"fields_at_or_below_every_simple_peer", report.fields_won()},
+               {"repeated_runs", report.repeats}});
   if (const auto best = report.best_peer()) root["best_single_peer"] = report.methods[*best].file.name;
   for (std::size_t k = 0; k < coverage_levels.size(); ++k)
     root["coverage"].push_back(

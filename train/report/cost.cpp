@@ -10,7 +10,7 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/io/file_kind.hpp"
 #include "elrom/report/accuracy.hpp"
 #include "names.hpp"
 
@@ -60,8 +60,8 @@ CostReport cost_report(const CostOptions& options, Log& log, const std::stop_tok
 }
 
 std::string to_json(const CostReport& report) {
-  Json root{
-      {"kind", "elrom-cost"}, {"format", {1, 0}}, {"program", program_version()}, {"points", Json::array()}};
+  auto root = io::json_head<Json>(io::kinds::cost);
+  root["points"] = Json::array();
   for (const auto& point : report.points)
     root["points"].push_back({{"name", point.name},
                               {"error", std::isfinite(point.error) ? Json(point.error) : Json()},
@@ -73,6 +73,7 @@ std::string to_json(const CostReport& report) {
 
 CostReport read_cost_report(const std::filesystem::path& path) {
   const auto root = Json::parse(base::read_text(path), nullptr, false);
+  io::check_json_kind(root, io::kinds::cost, path.string());
   try {
     CostReport report;
     for (const auto& node : root.at("points")) {

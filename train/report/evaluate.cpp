@@ -59,7 +59,7 @@ HeldOutCases hold_out_cases(const field::SnapshotStore& store, const StudyFiles&
   std::vector<bool> is_repeat;
   HeldOutCases cases;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    is_repeat.push_back(base::matches(study.held_out[i], "rep*"));
+    is_repeat.push_back(store.furnace() && store.furnace()->is_repeat(study.held_out[i]));
     if (!is_repeat.back()) cases.scored.push_back(rows[i]);
   }
   if (cases.scored.empty())
@@ -119,7 +119,8 @@ model::Audit audit_truth(const field::SnapshotStore& store, std::size_t row, std
     const auto cells = store.read(info.name, std::array{row});
     values.insert(values.end(), cells.data(), cells.data() + cells.size());
   }
-  return model::audit({store.mesh(), store.schema(), inputs, fields, values});
+  return model::audit({store.mesh(), store.schema(), inputs, fields, values},
+                      model::audit_settings(store.furnace()));
 }
 
 // Validity verdict and physics audit of each scored case.
@@ -134,12 +135,13 @@ std::vector<ScoredCase> describe_cases(const field::SnapshotStore& store, const 
     const auto inputs = case_inputs(cases, i);
     const auto& record = store.cases()[cases.scored[i]];
     predictor.predict(inputs, values, {}, scratch, n_threads);
-    described.push_back({.name = record.inputs.name,
-                         .load = record.inputs.load,
-                         .validity = guard.assess(inputs),
-                         .truth_audit = audit_truth(store, cases.scored[i], inputs),
-                         .prediction_audit = model::audit(
-                             {store.mesh(), store.schema(), inputs, predictor.fields(), values})});
+    described.push_back(
+        {.name = record.inputs.name,
+         .load = record.inputs.load,
+         .validity = guard.assess(inputs),
+         .truth_audit = audit_truth(store, cases.scored[i], inputs),
+         .prediction_audit = model::audit({store.mesh(), store.schema(), inputs, predictor.fields(), values},
+                                          model::audit_settings(store.furnace()))});
   }
   return described;
 }
@@ -171,6 +173,8 @@ std::string now_utc() {
 AccuracyReport evaluate(const AccuracyOptions& options, Log& log, const std::stop_token& stop) {
   AccuracyReport report{.study = open_study(options.study, options.store), .created = now_utc()};
   const auto store = field::SnapshotStore::open(report.study.store);
+  if (!store.furnace())
+    log.warning("no gas balance, and no case known as a repeated run: the store has no furnace description");
   const auto cases = hold_out_cases(store, report.study);
   report.n_training = cases.building.size();
   report.n_planes = store.mesh().n_planes;

@@ -9,6 +9,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/math/statistics.hpp"
 #include "elrom/model/banded_networks.hpp"
 #include "names.hpp"
 
@@ -104,10 +105,10 @@ void budget_errors(const MatrixF& training, const MatrixF& truth, FieldAccuracy&
   }
   const auto& sums = result.methods.front().pooled;
   for (const double residual : residuals)
-    result.compression_nrmse.push_back(std::sqrt(residual / residuals.front()));
+    result.compression_nrmse.push_back(math::nrmse(residual, residuals.front()));
   result.budget = error_budget(sums, result.noise_energy(), residuals.back());
   if (!result.noise.empty() && sums.departure > 0)
-    result.noise_nrmse = std::sqrt(result.noise_energy() / sums.departure);
+    result.noise_nrmse = math::nrmse(result.noise_energy(), sums.departure);
 }
 
 // Measured coverage at every level; the mean half-widths of planes at 90 % go to the drawings.

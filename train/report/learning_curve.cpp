@@ -37,7 +37,8 @@ Material gather(const StudyFiles& study) {
   };
   for (const auto& name : study.building) material.building.push_back(row_of(name));
   for (const auto& name : study.held_out)
-    if (!base::matches(name, "rep*")) material.scored.push_back(row_of(name));
+    if (!material.store.furnace() || !material.store.furnace()->is_repeat(name))
+      material.scored.push_back(row_of(name));
   if (material.scored.empty() || material.building.size() < 4)
     throw UsageError("a learning curve needs at least four training cases and one held-out case");
   material.cases = study::study_cases(material.store, study::read_settings(study.settings), material.building,
@@ -107,24 +108,6 @@ MatrixD field_errors(const Material& material, const field::FieldInfo& info, con
   return errors;
 }
 
-std::vector<field::FieldInfo> chosen_fields(const field::SnapshotStore& store,
-                                            const model::BundleInfo& bundle,
-                                            const std::vector<std::string>& names) {
-  if (names.empty()) return bundle.fields;
-  std::vector<field::FieldInfo> fields;
-  std::vector<std::string> known;
-  for (const auto& info : store.fields()) known.push_back(info.name);
-  for (const auto& name : names) {
-    const auto found = std::find_if(store.fields().begin(), store.fields().end(),
-                                    [&](const auto& f) { return f.name == name; });
-    if (found == store.fields().end())
-      throw UsageError(
-          {.what = "no field '" + name + "' in the store", .advice = base::name_advice(name, known)});
-    fields.push_back(*found);
-  }
-  return fields;
-}
-
 // Fields down, one (sizes, draws) table each, to points with mean and scatter over draws.
 std::vector<LearningPoint> points_of(const std::vector<std::size_t>& sizes,
                                      const std::map<std::string, MatrixD>& errors) {
@@ -153,7 +136,9 @@ LearningCurve learning_curve(const LearningCurveOptions& options, Log& log, cons
   const auto study = open_study(options.study, options.store);
   auto material = gather(study);
   const model::BundleReader bundle(study.bundles.front().path);
-  const auto fields = chosen_fields(material.store, bundle.info(), options.fields);
+  const auto fields = options.fields.empty()
+                          ? bundle.info().fields
+                          : field::choose_fields(material.store.fields(), options.fields, "the store");
   LearningCurve curve{.study = study.name,
                       .method = options.method.empty() ? method_of(bundle) : options.method};
   const auto method = make_method(curve.method);

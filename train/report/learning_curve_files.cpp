@@ -7,7 +7,7 @@
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/io/file_kind.hpp"
 #include "elrom/report/learning_curve.hpp"
 #include "names.hpp"
 
@@ -33,22 +33,21 @@ LearningPoint to_point(const Json& node) {
 }  // namespace
 
 std::string to_json(const LearningCurve& curve) {
-  Json root{{"kind", "elrom-learning-curve"},
-            {"format", {1, 0}},
-            {"program", program_version()},
-            {"study", curve.study},
-            {"method", curve.method},
-            {"points", Json::array()},
-            {"fit", {{"floor", curve.fit.floor}, {"scale", curve.fit.scale}, {"rate", curve.fit.rate}}},
-            {"gain_next_20", curve.gain_next_20},
-            {"v1", to_node(curve.v1)},
-            {"v2", to_node(curve.v2)}};
+  auto root = io::json_head<Json>(io::kinds::learning_curve);
+  root.update({{"study", curve.study},
+               {"method", curve.method},
+               {"points", Json::array()},
+               {"fit", {{"floor", curve.fit.floor}, {"scale", curve.fit.scale}, {"rate", curve.fit.rate}}},
+               {"gain_next_20", curve.gain_next_20},
+               {"v1", to_node(curve.v1)},
+               {"v2", to_node(curve.v2)}});
   for (const auto& point : curve.points) root["points"].push_back(to_node(point));
   return root.dump(1) + '\n';
 }
 
 LearningCurve read_learning_curve(const std::filesystem::path& path) {
   const auto root = Json::parse(base::read_text(path), nullptr, false);
+  io::check_json_kind(root, io::kinds::learning_curve, path.string());
   try {
     LearningCurve curve{.study = root.at("study"), .method = root.at("method")};
     for (const auto& node : root.at("points")) curve.points.push_back(to_point(node));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "elrom/base/error.hpp"
+#include "elrom/math/statistics.hpp"
 
 namespace elrom::report {
 namespace {
@@ -57,7 +58,7 @@ ErrorSums& ErrorSums::operator+=(const ErrorSums& other) {
   return *this;
 }
 
-double ErrorSums::nrmse() const { return departure > 0 ? std::sqrt(error / departure) : undefined; }
+double ErrorSums::nrmse() const { return math::nrmse(error, departure); }
 double ErrorSums::standardised_mse() const {
   return n_standardised > 0 ? standardised / static_cast<double>(n_standardised) : undefined;
 }
@@ -147,8 +148,7 @@ std::vector<double> noise_at_loads(std::span<const double> measured_loads, std::
 }
 
 double nrmse_without_noise(const ErrorSums& sums, double noise) {
-  if (!(sums.departure > noise)) return undefined;
-  return std::sqrt(std::max(0.0, sums.error - noise) / (sums.departure - noise));
+  return math::nrmse(std::max(0.0, sums.error - noise), sums.departure - noise);
 }
 
 CaseSpan::CaseSpan(const MatrixF& values) {

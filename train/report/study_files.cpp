@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 
-#include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/study/held_out.hpp"
 #include "elrom/study/settings.hpp"
+#include "elrom/study/timing.hpp"
 
 namespace elrom::report {
 namespace {
@@ -45,31 +44,14 @@ std::vector<BundleFile> peers_of(const fs::path& directory) {
   return peers;
 }
 
-// "stages" and "methods" of timing.json: a number each, or an object with "seconds".
-std::map<std::string, double> seconds_of(const nlohmann::json& root, const char* part) {
-  std::map<std::string, double> seconds;
-  if (!root.is_object() || !root.contains(part) || !root.at(part).is_object()) return seconds;
-  for (const auto& [name, value] : root.at(part).items()) {
-    if (value.is_number()) seconds[name] = value.get<double>();
-    if (value.is_object() && value.contains("seconds") && value["seconds"].is_number())
-      seconds[name] = value["seconds"].get<double>();
-  }
-  return seconds;
-}
-
 // The last run that reused nothing tells what the study takes; later ones only what was left to do.
 void read_timing(StudyFiles& study, const std::string& model_method) {
-  const auto file = study.directory / "timing.json";
-  if (!fs::exists(file)) return;
-  const auto root = nlohmann::json::parse(base::read_text(file), nullptr, false);
-  if (root.is_discarded()) throw InputError({"not a JSON file", file.string()});
-  const bool has_full_run =
-      root.is_object() && root.contains("from_nothing") && root["from_nothing"].is_object();
-  study.stage_seconds = seconds_of(has_full_run ? root["from_nothing"] : root, "stages");
-  const auto methods = seconds_of(root, "methods");
+  const auto timing = study::read_timing(study.directory / "timing.json");
+  if (!timing) return;
+  study.stage_seconds = timing->full_seconds ? timing->full_stages : timing->stages;
   for (auto& bundle : study.bundles) {
-    const auto found = methods.find(&bundle == &study.bundles.front() ? model_method : bundle.name);
-    if (found != methods.end()) bundle.train_seconds = found->second;
+    const auto found = timing->methods.find(&bundle == &study.bundles.front() ? model_method : bundle.name);
+    if (found != timing->methods.end()) bundle.train_seconds = found->second;
   }
 }
 

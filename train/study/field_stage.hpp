@@ -23,16 +23,35 @@ struct FieldStage {
   [[nodiscard]] const std::string& accuracy() const { return file.text("accuracy"); }
 };
 
-struct FieldStageRequest {
-  std::string name;                                ///< "auto", "pod_gp" ...
-  std::vector<const methods::Method*> candidates;  ///< one, or for "auto" those it chooses among
-  const field::FieldData& data;
-  std::vector<double> band_edges;  ///< for "auto": see AutoOptions
-  std::size_t n_folds = 0;         ///< cross-validation for error and intervals; 0: none
-  std::string settings_digest;     ///< of every setting that the result depends on
+/// A method as an input of a stage: with what it depends on for one field.
+struct Candidate {
+  const methods::Method* method;
+  std::string field;
+  [[nodiscard]] std::string key() const { return method->key(field); }
 };
 
-/// From the cache, or fitted now on all cases of the data.
+/// Fitted on all cases of the data. Read the file as a FieldStage.
+struct ModelStage {
+  static constexpr const char* stage = "model";
+  static constexpr int version = 1;
+  std::string name;                   ///< "auto", "pod_gp" ...
+  std::vector<Candidate> candidates;  ///< one, or for "auto" those it chooses among
+  const field::FieldData* data;
+  std::vector<double> band_edges;  ///< for "auto": see AutoOptions
+  std::size_t n_folds;             ///< cross-validation for error and intervals; 0: none
+  base::Seed seed;
+  [[nodiscard]] io::TensorFile compute(const methods::FitContext& context) const;
+};
+
+struct FieldStageRequest {
+  std::string name;
+  std::vector<const methods::Method*> candidates;
+  const field::FieldData& data;
+  std::vector<double> band_edges;
+  std::size_t n_folds = 0;
+};
+
+/// From the cache, or fitted now.
 [[nodiscard]] FieldStage fit_field(const FieldStageRequest& request, const io::StageCache& cache,
                                    const methods::FitContext& context);
 

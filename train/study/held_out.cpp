@@ -6,7 +6,7 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/io/file_kind.hpp"
 
 namespace elrom::study {
 
@@ -26,21 +26,26 @@ HeldOut hold_out(const std::vector<std::string>& names, const std::vector<std::s
   return result;
 }
 
+HeldOut hold_out(const field::SnapshotStore& store, const std::vector<std::string>& patterns) {
+  std::vector<std::string> names;
+  for (const auto& record : store.cases()) names.push_back(record.inputs.name);
+  return hold_out(names, patterns);
+}
+
 void write_split(const std::filesystem::path& path, const SplitNames& split) {
-  const nlohmann::ordered_json json{{"kind", "elrom-split"},        {"format", {1, 0}},
-                                    {"program", program_version()}, {"by", split.by},
-                                    {"train", split.train},         {"validation", split.validation},
-                                    {"test", split.test},           {"held_out", split.held_out}};
+  auto json = io::json_head<nlohmann::ordered_json>(io::kinds::split);
+  json.update({{"by", split.by},
+               {"train", split.train},
+               {"validation", split.validation},
+               {"test", split.test},
+               {"held_out", split.held_out}});
   base::write_text(path, json.dump(1) + "\n");
 }
 
 SplitNames read_split(const std::filesystem::path& path) {
   try {
     const auto json = nlohmann::json::parse(base::read_text(path));
-    if (json.at("kind") != "elrom-split" || json.at("format").at(0) != 1) {
-      throw InputError(
-          {.what = "another kind or version of file", .where = path.string(), .expected = "elrom-split 1"});
-    }
+    io::check_json_kind(json, io::kinds::split, path.string());
     return {json.at("by"), json.at("train"), json.at("validation"), json.at("test"), json.at("held_out")};
   } catch (const nlohmann::json::exception& error) {
     throw InputError({.what = "no valid split file", .where = path.string(), .found = error.what()});

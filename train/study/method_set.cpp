@@ -86,13 +86,8 @@ bool MethodSet::trains_networks(const std::string& name) const {
   return has_networks() && (name == "networks" || (name == "auto" && settings_.peers.networks));
 }
 
-std::string MethodSet::settings_text(const std::string& name) const {
-  if (is_peer(name)) return name;
-  std::string text = name;
-  for (const auto* section : {"symmetry", "split", "screen", "bands", "search", "fit", "networks", "peers"}) {
-    text += to_toml(settings_, section);
-  }
-  return text;
+std::vector<const methods::Method*> MethodSet::candidates_of(const std::string& name) {
+  return name == "auto" ? candidates() : std::vector{&get(name)};
 }
 
 }  // namespace elrom::study

@@ -22,8 +22,8 @@ class MethodSet {
   /// Whether networks take part in this method.
   [[nodiscard]] bool trains_networks(const std::string& name) const;
   [[nodiscard]] bool is_peer(const std::string& name) const;
-  /// Text of the settings that a method's result depends on.
-  [[nodiscard]] std::string settings_text(const std::string& name) const;
+  /// The method itself, or for "auto" what it chooses among.
+  [[nodiscard]] std::vector<const methods::Method*> candidates_of(const std::string& name);
 
  private:
   [[nodiscard]] std::unique_ptr<methods::Method> make(const std::string& name) const;

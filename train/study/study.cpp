@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/atomic_file.hpp"
-#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/math/statistics.hpp"
@@ -38,23 +38,6 @@ std::filesystem::path store_path(const std::filesystem::path& folder, const Sett
   return store.is_absolute() ? store : folder / store;
 }
 
-std::vector<field::FieldInfo> chosen_fields(const field::SnapshotStore& store, const Settings& settings) {
-  if (settings.fields.empty()) return store.fields();
-  std::vector<std::string> known;
-  for (const auto& info : store.fields()) known.push_back(info.name);
-  std::vector<field::FieldInfo> chosen;
-  for (const auto& name : settings.fields) {
-    const auto found = std::ranges::find(store.fields(), name, &field::FieldInfo::name);
-    if (found == store.fields().end()) {
-      throw UsageError({.what = "unknown field '" + name + "'",
-                        .where = "fields.names",
-                        .advice = base::name_advice(name, known)});
-    }
-    chosen.push_back(*found);
-  }
-  return chosen;
-}
-
 }  // namespace
 
 struct Study::Impl {
@@ -67,9 +50,9 @@ struct Study::Impl {
         stop(std::move(stop_)),
         lock(folder / ".lock"),
         store(field::SnapshotStore::open(store_path(folder, settings))),
-        rows(hold_out(names_of(store), settings.split.held_out)),
+        rows(held_out_rows()),
         cases(study_cases(store, settings, rows.building, log)),
-        fields(chosen_fields(store, settings)),
+        fields(field::choose_fields(store.fields(), settings.fields, "fields.names")),
         cache(folder / "stages", log),
         trials(folder / "search.sqlite"),
         workers(toolbox.workers),
@@ -80,10 +63,9 @@ struct Study::Impl {
     write_names();
   }
 
-  static std::vector<std::string> names_of(const field::SnapshotStore& store) {
-    std::vector<std::string> names;
-    for (const auto& record : store.cases()) names.push_back(record.inputs.name);
-    return names;
+  HeldOut held_out_rows() {
+    settings.split.held_out = held_out_patterns(store, settings, log);
+    return hold_out(store, *settings.split.held_out);
   }
 
   [[nodiscard]] base::Seed seed() const { return base::Seed(static_cast<std::uint64_t>(settings.seed)); }
@@ -150,11 +132,10 @@ struct Study::Impl {
     data.cases = methods.is_peer(name) ? &plain_cases : &cases;
     const FieldStageRequest request{
         .name = name,
-        .candidates = name == "auto" ? methods.candidates() : std::vector{&methods.get(name)},
+        .candidates = methods.candidates_of(name),
         .data = data,
         .band_edges = settings.bands.edges,
-        .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0,
-        .settings_digest = methods.settings_text(name)};
+        .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0};
     auto stage = fit_field(request, cache, context());
     data.cases = &cases;
     return stage;
@@ -196,15 +177,23 @@ struct Study::Impl {
     return {.field = field, .method = best, .cross_validated_nrmse = stage.nrmse(), .bands = {}};
   }
 
+  std::string settings_digest(const std::string& name) {
+    std::vector<std::string> keys;
+    for (const auto* method : methods.candidates_of(name))
+      for (const auto& info : fields) keys.push_back(method->key(info.name));
+    return base::digest_of_members(name, keys);
+  }
+
   void write_bundle(const std::string& name, const std::map<std::string, FieldStage>& stages,
                     const std::filesystem::path& model_path) {
     const bool is_main = name == settings.method;
     const auto path = is_main ? model_path : made(folder / "peers") / (name + ".elrom");
     const StudyBundle bundle{.method = name,
                              .fields = fields,
-                             .cases = cases,
+                             .cases = plain_cases,
+                             .furnace = store.furnace(),
                              .store_digest = store.digest(rows.building),
-                             .settings_digest = base::Sha256().add(methods.settings_text(name)).hex()};
+                             .settings_digest = settings_digest(name)};
     const auto begin = Clock::now();
     write_study_bundle(path, bundle, stages);
     cache.clock().add("bundle", std::chrono::duration<double>(Clock::now() - begin).count(), false);

@@ -2,21 +2,20 @@
 
 #include <nlohmann/json.hpp>
 
-#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/model/bundle.hpp"
 
 namespace elrom::study {
 namespace {
 
-// What the bundle is made of, by the inputs of its stages; no time of day, so that the same study gives the
+// What the bundle is made of; of its stages, by their inputs. No time of day, so that the same study gives the
 // same bytes.
 std::string content_digest(const StudyBundle& bundle, const std::map<std::string, FieldStage>& stages) {
-  base::Sha256 digest;
-  digest.add(bundle.method).add(bundle.store_digest).add(bundle.settings_digest).add(program_version());
-  for (const auto& [field, stage] : stages) digest.add(field).add(stage.file.text("stage_digest"));
-  return digest.hex();
+  std::map<std::string, std::string> keys;
+  for (const auto& [field, stage] : stages) keys[field] = stage.file.text("stage_digest");
+  return base::digest_of_members(bundle, keys, std::string_view(program_version()));
 }
 
 bool holds(const std::filesystem::path& path, const std::string& content) {
@@ -55,6 +54,7 @@ void write_study_bundle(const std::filesystem::path& path, const StudyBundle& st
   }
   bundle.info.accuracy_json = accuracy.dump();
   bundle.mesh = study.cases.mesh;
+  bundle.furnace = study.furnace;
   bundle.guard = model::Guard(study.cases.schema, study.cases.inputs, study.cases.names, study.cases.loads);
   bundle.write(path);
 }

@@ -10,6 +10,7 @@ struct StudyBundle {
   std::string method;
   std::vector<field::FieldInfo> fields;
   const field::CaseSet& cases;
+  std::optional<field::Furnace> furnace;
   std::string store_digest, settings_digest;
 };
 

@@ -9,18 +9,30 @@ std::vector<field::Mirror> resolved_mirrors(const field::SnapshotStore& store, c
   std::vector<field::Mirror> mirrors;
   if (!settings.symmetry.enabled) return mirrors;
   const bool declared = !settings.symmetry.mirrors.empty();
-  for (const auto& mirror : declared ? settings.symmetry.mirrors : furnace_mirrors()) {
+  if (!declared && !store.furnace())
+    log.info("no mirror images: the store has no furnace description, and study.toml declares none");
+  const auto of_furnace =
+      store.furnace() ? store.furnace()->mirrors : std::vector<field::MirrorDeclaration>();
+  for (const auto& mirror : declared ? settings.symmetry.mirrors : of_furnace) {
     try {
       mirrors.push_back(field::resolve(mirror, store.schema(), store.mesh()));
     } catch (const InputError& error) {
       if (declared) throw;
-      log.detail("no mirror '" + mirror.name + "' on these cases: " + error.what());
+      log.info("mirror '" + mirror.name + "' of the furnace not used: " + error.what());
     }
   }
   return mirrors;
 }
 
 }  // namespace
+
+std::vector<std::string> held_out_patterns(const field::SnapshotStore& store, const Settings& settings,
+                                           Log& log) {
+  if (settings.split.held_out) return *settings.split.held_out;
+  if (store.furnace()) return store.furnace()->held_out;
+  log.warning("no case is held out: the store has no furnace description, and study.toml names none");
+  return {};
+}
 
 field::CaseSet study_cases(const field::SnapshotStore& store, const Settings& settings,
                            const std::vector<std::size_t>& rows, Log& log) {

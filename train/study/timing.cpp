@@ -6,18 +6,59 @@
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/atomic_file.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/io/file_kind.hpp"
 
 namespace elrom::study {
 namespace {
 
-nlohmann::ordered_json earlier_full_run(const std::filesystem::path& path) {
+using Json = nlohmann::ordered_json;
+
+Json parse_timing(const std::filesystem::path& path) {
+  auto json = Json::parse(base::read_text(path), nullptr, false);
+  io::check_json_kind(json, io::kinds::timing, path.string());
+  return json;
+}
+
+/// A file that cannot be used must not stop the run whose time is to be written.
+Json earlier_full_run(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return nullptr;
-  const auto json = nlohmann::ordered_json::parse(base::read_text(path), nullptr, false);
-  return json.is_object() && json.contains("from_nothing") ? json["from_nothing"] : nlohmann::ordered_json();
+  try {
+    return parse_timing(path).value("from_nothing", Json());
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+/// A number each, or an object with "seconds".
+std::map<std::string, double> seconds_of(const Json& root, const char* part) {
+  std::map<std::string, double> seconds;
+  for (const auto& [name, value] : root.value(part, Json::object()).items()) {
+    if (value.is_number()) seconds[name] = value.get<double>();
+    if (value.is_object()) seconds[name] = value.at("seconds").get<double>();
+  }
+  return seconds;
 }
 
 }  // namespace
+
+std::optional<StudyTiming> read_timing(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  const auto json = parse_timing(path);
+  try {
+    StudyTiming timing{.total_seconds = json.value("total_seconds", 0.0),
+                       .peak_rss_gib = json.value("peak_rss_gib", 0.0),
+                       .stages = seconds_of(json, "stages"),
+                       .methods = seconds_of(json, "methods")};
+    if (const auto full = json.value("from_nothing", Json()); full.is_object()) {
+      timing.full_seconds = full.value("total_seconds", 0.0);
+      timing.full_stages = seconds_of(full, "stages");
+    }
+    return timing;
+  } catch (const Json::exception& fault) {
+    throw InputError({.what = "no valid timing file", .where = path.string(), .found = fault.what()});
+  }
+}
 
 double peak_rss_gib() {
   rusage usage{};
@@ -28,24 +69,21 @@ double peak_rss_gib() {
 void write_timing(const std::filesystem::path& path,
                   const std::map<std::string, io::StageClock::Entry>& entries, double total_seconds,
                   int n_threads, const std::map<std::string, double>& methods) {
-  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  Json stages = Json::object();
   std::int64_t reused = 0;
   for (const auto& [stage, entry] : entries) {
     stages[stage] = {{"seconds", entry.seconds}, {"computed", entry.computed}, {"reused", entry.reused}};
     if (stage == "model") reused += entry.reused;  // within a run, models share what earlier stages kept
   }
-  nlohmann::ordered_json json{{"kind", "elrom-timing"},
-                              {"format", {1, 0}},
-                              {"program", program_version()},
-                              {"threads", n_threads},
-                              {"total_seconds", total_seconds},
-                              {"peak_rss_gib", peak_rss_gib()},
-                              {"stages", stages}};
+  auto json = io::json_head<Json>(io::kinds::timing);
+  json.update({{"threads", n_threads},
+               {"total_seconds", total_seconds},
+               {"peak_rss_gib", peak_rss_gib()},
+               {"stages", stages}});
   for (const auto& [method, seconds] : methods)
     if (std::isfinite(seconds)) json["methods"][method] = seconds;
-  json["from_nothing"] = reused == 0
-                             ? nlohmann::ordered_json{{"total_seconds", total_seconds}, {"stages", stages}}
-                             : earlier_full_run(path);
+  json["from_nothing"] =
+      reused == 0 ? Json{{"total_seconds", total_seconds}, {"stages", stages}} : earlier_full_run(path);
   base::write_text(path, json.dump(1) + "\n");
 }
 

@@ -1,9 +1,10 @@
 #pragma once
-// timing.json: seconds of each stage of the last run, and what was reused. Internal to the study.
+// Writing timing.json: seconds of each stage of the last run, and what was reused. Internal to the study.
 
 #include <filesystem>
 
 #include "elrom/io/stage_cache.hpp"
+#include "elrom/study/timing.hpp"
 
 namespace elrom::study {
 

@@ -3,22 +3,14 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/base/members.hpp"
 #include "elrom/io/tensor_file.hpp"
 
 namespace elrom::torch {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr FormatVersion format{1, 0};
-
-void add(base::Sha256& sha, const MatrixF& matrix) {
-  sha.add_value<std::int64_t>(matrix.rows()).add_value<std::int64_t>(matrix.cols());
-  sha.add(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size()))));
-}
 
 io::Tensor to_file(const ::torch::Tensor& tensor) {
   const auto host = tensor.to(::torch::kCPU).contiguous();
@@ -66,24 +58,15 @@ void load(const io::TensorFile& file, Training& training) {
 
 }  // namespace
 
-std::string training_digest(const networks::TrainingProblem& problem, const networks::Hyperparameters& h,
+std::string training_digest(const networks::TrainingProblem& problem,
+                            const networks::Hyperparameters& hyperparameters,
                             const networks::TrainingBudget& budget, base::Seed seed) {
-  base::Sha256 sha;
-  for (const MatrixF* matrix :
-       {&problem.train_inputs, &problem.train_targets, &problem.train_weights, &problem.validation_inputs,
-        &problem.validation_targets, &problem.validation_weights})
-    add(sha, *matrix);
-  for (const double value : {h.learning_rate, h.weight_decay, h.dropout}) sha.add_value(value);
-  for (const int value : {h.n_layers, h.n_units, h.batch_size, budget.max_epochs, budget.patience})
-    sha.add_value(value);
-  return sha.add(model::name_of(h.activation)).add_value(seed.value()).hex();
+  return base::digest_of_members(problem, hyperparameters, budget, seed);
 }
 
 void save_checkpoint(const std::filesystem::path& path, const std::string& digest, Training& training) {
   io::TensorFile file;
-  file.set_text("kind", "elrom-checkpoint");
-  file.set_text("format", format.text());
-  file.set_text("program", program_version());
+  io::write_kind(file, io::kinds::checkpoint);
   file.set_text("training", digest);
   file.set_text(
       "state",
@@ -100,7 +83,8 @@ bool load_checkpoint(const std::filesystem::path& path, const std::string& diges
   if (path.empty() || !std::filesystem::exists(path, ignored)) return false;
   try {
     const auto file = io::TensorFile::open(path);
-    if (file.text("kind") != "elrom-checkpoint" || file.text("training") != digest) return false;
+    io::check_kind(file, io::kinds::checkpoint);
+    if (file.text("training") != digest) return false;
     load(file, training);
     return true;
   } catch (const InputError&) {

@@ -33,11 +33,11 @@ constexpr double back_off = 0.1;
 }
 
 /// One call of train().
-class Run {
+class TrainCall {
  public:
-  Run(const networks::TrainingProblem& problem, const networks::Hyperparameters& hyperparameters,
-      const networks::TrainingBudget& budget, base::Seed seed, ::torch::Device device,
-      std::filesystem::path checkpoint)
+  TrainCall(const networks::TrainingProblem& problem, const networks::Hyperparameters& hyperparameters,
+            const networks::TrainingBudget& budget, base::Seed seed, ::torch::Device device,
+            std::filesystem::path checkpoint)
       : training_(problem, hyperparameters, seed, {device}),
         budget_(budget),
         checkpoint_(std::move(checkpoint)) {
@@ -122,7 +122,7 @@ class TorchTrainer final : public networks::Trainer {
                                                const std::stop_token& stop,
                                                const std::filesystem::path& checkpoint) const override {
     const OneFastThread guard;
-    return Run(problem, hyperparameters, budget, seed, device_, checkpoint).run(monitor, stop);
+    return TrainCall(problem, hyperparameters, budget, seed, device_, checkpoint).run(monitor, stop);
   }
 
  private:

@@ -1,95 +1,106 @@
 #pragma once
 // The members of a plain struct, one by one, without naming them: whatever is made of a struct this way (a
-// digest, a text) cannot forget one that was added later.
+// digest, a message) cannot forget one that was added later.
 //
 // Takes aggregates of up to 16 members, without base classes. Thread rule: pure functions.
 
 #include <cstddef>
-#include <map>
-#include <optional>
+#include <cstdint>
+#include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "elrom/base/digest.hpp"
+#include "elrom/base/random.hpp"
 
 namespace elrom::base {
 
 /// What an aggregate's member may be made from, for counting.
+template <std::size_t>
 struct AnyMember {
   template <class T>
   operator T() const;  // NOLINT: declared only
 };
 
-/// Number of members of an aggregate.
-template <class T, class... Members>
-consteval std::size_t n_members() {
-  if constexpr (requires { T{Members{}..., AnyMember{}}; })
-    return n_members<T, Members..., AnyMember>();
-  else
-    return sizeof...(Members);
+template <class T, std::size_t... i>
+consteval bool has_members(std::index_sequence<i...>) {
+  return requires { T{AnyMember<i>{}...}; };
 }
 
-/// Calls visit(member) for each member, in the order of declaration.
+inline constexpr std::size_t most_members = 16;
+
+/// Number of members of an aggregate; most_members + 1 when there are more. Counted downwards: with fewer, a
+/// member that has no default would be missing.
+template <class T, std::size_t n = most_members + 1>
+consteval std::size_t n_members() {
+  if constexpr (n == 0 || has_members<T>(std::make_index_sequence<n>()))
+    return n;
+  else
+    return n_members<T, n - 1>();
+}
+
+/// Calls visit(member) for each member, in the order of declaration; of a changeable value to change them.
 template <class T, class Visit>
-void for_each_member(const T& value, const Visit& visit) {
-  constexpr auto n = n_members<T>();
-  static_assert(n <= 16, "for_each_member: at most 16 members");
-  const auto each = [&](const auto&... members) { (visit(members), ...); };
+void for_each_member(T& value, const Visit& visit) {
+  constexpr auto n = n_members<std::remove_const_t<T>>();
+  static_assert(n >= 1 && n <= most_members, "for_each_member: from 1 to 16 members");
+  const auto each = [&](auto&... members) { (visit(members), ...); };
   if constexpr (n == 1) {
-    const auto& [a] = value;
+    auto& [a] = value;
     each(a);
   } else if constexpr (n == 2) {
-    const auto& [a, b] = value;
+    auto& [a, b] = value;
     each(a, b);
   } else if constexpr (n == 3) {
-    const auto& [a, b, c] = value;
+    auto& [a, b, c] = value;
     each(a, b, c);
   } else if constexpr (n == 4) {
-    const auto& [a, b, c, d] = value;
+    auto& [a, b, c, d] = value;
     each(a, b, c, d);
   } else if constexpr (n == 5) {
-    const auto& [a, b, c, d, e] = value;
+    auto& [a, b, c, d, e] = value;
     each(a, b, c, d, e);
   } else if constexpr (n == 6) {
-    const auto& [a, b, c, d, e, f] = value;
+    auto& [a, b, c, d, e, f] = value;
     each(a, b, c, d, e, f);
   } else if constexpr (n == 7) {
-    const auto& [a, b, c, d, e, f, g] = value;
+    auto& [a, b, c, d, e, f, g] = value;
     each(a, b, c, d, e, f, g);
   } else if constexpr (n == 8) {
-    const auto& [a, b, c, d, e, f, g, h] = value;
+    auto& [a, b, c, d, e, f, g, h] = value;
     each(a, b, c, d, e, f, g, h);
   } else if constexpr (n == 9) {
-    const auto& [a, b, c, d, e, f, g, h, i] = value;
+    auto& [a, b, c, d, e, f, g, h, i] = value;
     each(a, b, c, d, e, f, g, h, i);
   } else if constexpr (n == 10) {
-    const auto& [a, b, c, d, e, f, g, h, i, j] = value;
+    auto& [a, b, c, d, e, f, g, h, i, j] = value;
     each(a, b, c, d, e, f, g, h, i, j);
   } else if constexpr (n == 11) {
-    const auto& [a, b, c, d, e, f, g, h, i, j, k] = value;
+    auto& [a, b, c, d, e, f, g, h, i, j, k] = value;
     each(a, b, c, d, e, f, g, h, i, j, k);
   } else if constexpr (n == 12) {
-    const auto& [a, b, c, d, e, f, g, h, i, j, k, l] = value;
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l] = value;
     each(a, b, c, d, e, f, g, h, i, j, k, l);
   } else if constexpr (n == 13) {
-    const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = value;
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = value;
     each(a, b, c, d, e, f, g, h, i, j, k, l, m);
   } else if constexpr (n == 14) {
-    const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = value;
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = value;
     each(a, b, c, d, e, f, g, h, i, j, k, l, m, o);
   } else if constexpr (n == 15) {
-    const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = value;
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = value;
     each(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p);
   } else if constexpr (n == 16) {
-    const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = value;
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = value;
     each(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q);
   }
 }
 
-/// Adds every member of a value, however deep: numbers, enums, texts, pairs, optionals, lists, maps, and
-/// aggregates of those. A type that is none of these does not compile.
+/// Adds every member of a value, however deep: numbers, enums, texts, pairs, optionals, lists, maps, matrices, and
+/// aggregates of those. What has a key() is added by it, also behind a pointer. A type that is none of these does not
+/// compile.
 template <class T>
 void add_members(Sha256& digest, const T& value) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -98,6 +109,12 @@ void add_members(Sha256& digest, const T& value) {
     digest.add_value(static_cast<std::int64_t>(value));
   } else if constexpr (std::is_convertible_v<const T&, std::string_view>) {
     digest.add(std::string_view(value));
+  } else if constexpr (std::is_same_v<T, Seed>) {
+    digest.add_value(value.value());
+  } else if constexpr (requires { value.key(); }) {
+    add_members(digest, value.key());
+  } else if constexpr (requires { value->key(); }) {
+    add_members(digest, value->key());
   } else if constexpr (requires {
                          value.has_value();
                          *value;
@@ -105,11 +122,24 @@ void add_members(Sha256& digest, const T& value) {
     digest.add_value(value.has_value());
     if (value.has_value()) add_members(digest, *value);
   } else if constexpr (requires {
+                         value.data();
+                         value.rows();
+                         value.cols();
+                       }) {
+    digest.add_value(static_cast<std::int64_t>(value.rows()));
+    digest.add_value(static_cast<std::int64_t>(value.cols()));
+    digest.add(std::as_bytes(std::span(value.data(), static_cast<std::size_t>(value.size()))));
+  } else if constexpr (requires {
                          value.begin();
                          value.size();
                        }) {
     digest.add_value(value.size());
-    for (const auto& item : value) add_members(digest, item);
+    if constexpr (requires { std::as_bytes(std::span(value.data(), value.size())); } &&
+                  std::is_arithmetic_v<typename T::value_type>) {
+      digest.add(std::as_bytes(std::span(value.data(), value.size())));
+    } else {
+      for (const auto& item : value) add_members(digest, item);
+    }
   } else if constexpr (requires {
                          value.first;
                          value.second;

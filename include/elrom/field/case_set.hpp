@@ -25,6 +25,8 @@ struct CaseSet {
   MatrixD inputs;                  //!< SI, (n_cases, n_inputs)
   std::vector<Mirror> mirrors;     ///< declared and switched on; empty: none
   [[nodiscard]] std::size_t n_cases() const { return names.size(); }
+  /// SHA-256 over all of it.
+  [[nodiscard]] std::string key() const;
 };
 
 /// One field of all cases of a study; one is resident at a time.
@@ -32,9 +34,34 @@ struct FieldData {
   const CaseSet* cases = nullptr;
   FieldInfo info;
   MatrixF values;  //!< SI, (n_cases, n_cells)
+
+  /// SHA-256 over all of it and of its cases: key of the stages that are given the whole.
+  [[nodiscard]] std::string key() const;
 };
 
-/// SHA-256 over inputs, values, loads and mesh of these cases: what every result of theirs depends on.
-[[nodiscard]] std::string data_digest(const FieldData& data, std::span<const std::size_t> cases);
+/// Some cases of a field and nothing else of a study: what records are made of. All that can be read here is
+/// part of its key.
+class FieldRows {
+ public:
+  /// @param with_mirrors else there are none. `data` must outlive it
+  FieldRows(const FieldData& data, std::span<const std::size_t> rows, bool with_mirrors = true);
+
+  [[nodiscard]] std::size_t n_cases() const { return rows_.size(); }
+  [[nodiscard]] std::size_t n_inputs() const { return data_.cases->schema.size(); }
+  [[nodiscard]] std::size_t n_planes() const { return data_.cases->mesh.n_planes; }
+  [[nodiscard]] std::size_t n_columns() const { return data_.cases->mesh.n_columns; }
+  [[nodiscard]] const FieldInfo& info() const { return data_.info; }
+  [[nodiscard]] const std::vector<Mirror>& mirrors() const;
+  [[nodiscard]] double load(std::size_t i) const { return data_.cases->loads[rows_[i]]; }
+  [[nodiscard]] std::span<const double> inputs(std::size_t i) const;  ///< SI, (n_inputs())
+  [[nodiscard]] std::span<const float> values(std::size_t i) const;   ///< SI, (n_planes() * n_columns())
+
+  [[nodiscard]] std::string key() const;
+
+ private:
+  const FieldData& data_;
+  std::vector<std::size_t> rows_;
+  bool with_mirrors_;
+};
 
 }  // namespace elrom::field

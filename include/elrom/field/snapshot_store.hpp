@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +15,7 @@
 
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/field/furnace.hpp"
 #include "elrom/field/mesh.hpp"
 #include "elrom/math/matrix.hpp"
 
@@ -48,6 +51,9 @@ class SnapshotStore {
   [[nodiscard]] std::size_t n_cases() const;
   [[nodiscard]] const Mesh& mesh() const;
   [[nodiscard]] const InputSchema& schema() const;
+  /// Nothing: nobody described it (or the store is older than that).
+  [[nodiscard]] const std::optional<Furnace>& furnace() const;
+  /// Within what the furnace allows, where there is one.
   [[nodiscard]] const std::vector<FieldInfo>& fields() const;
   [[nodiscard]] const std::vector<CaseRecord>& cases() const;
   /// Indices of cases whose name matches the pattern (shell style). Empty when none does.
@@ -73,14 +79,16 @@ class SnapshotStore {
 class SnapshotWriter {
  public:
   /// New store at `path` (nothing there yet), or, with the same mesh, schema and fields, an addition to the
-  /// one there.
-  /// @throws InputError "store of another mesh" / schema /
-  /// field list, with both digests or the first difference
+  /// one there. @param furnace takes an earlier one's place; nothing: what is there stays
+  /// @throws InputError "store of another mesh" / schema / field list, with both digests or the first
+  /// difference
   SnapshotWriter(const std::filesystem::path& path, const Mesh& mesh, const InputSchema& schema,
-                 const std::vector<FieldInfo>& fields);
+                 const std::vector<FieldInfo>& fields, const std::optional<Furnace>& furnace = std::nullopt);
   ~SnapshotWriter();
   /// @throws InputError for a second case of the same name, or of the same content under another name
   void add(const Snapshot& snapshot);
+  /// Takes cases out again that this writer added: what is left is written anew, as if they had never come.
+  void leave_out(const std::set<std::string>& names);
   void commit();
 
  private:

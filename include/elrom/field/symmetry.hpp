@@ -14,10 +14,10 @@
 
 namespace elrom::field {
 
-/// As declared in study.toml: names only.
+/// As declared by a furnace or in study.toml: names only.
 struct MirrorDeclaration {
-  std::string name;  ///< "left-right"
-  char axis = 'y';   ///< the coordinate that changes its sense: 'x' or 'y'
+  std::string name = "mirror";  ///< "left-right"
+  char axis = 'y';              ///< the coordinate that changes its sense: 'x' or 'y'
   std::vector<std::pair<std::string, std::string>>
       swap;                             ///< {"*_left", "*_right"}; the same number of '*' in both
   std::vector<std::string> complement;  ///< inputs q that become 1 - q

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "elrom/field/planes.hpp"
+#include "elrom/fields/formats.hpp"
 #include "elrom/model/cells.hpp"
 
 namespace elrom::fields {
-
-enum class Format { hdf, csv, txt, ip };
 
 struct Arguments {
   std::filesystem::path bundle;

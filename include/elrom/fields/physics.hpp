@@ -26,7 +26,8 @@ struct PhysicsResult {
 /// Thread rule: const use from any number of threads.
 class Physics {
  public:
-  /// @throws UsageError when cells, fields or inputs are missing that the audit or the repair need
+  /// @throws UsageError when cells, fields, inputs or the furnace are missing that the audit or the repair
+  /// need
   Physics(const Arguments& arguments, const model::BundleReader& bundle, const model::Cells& cells);
 
   /// @param values all cells of the chosen fields; changed with --conserve. @throws NumericalError (the case
@@ -35,6 +36,7 @@ class Physics {
 
  private:
   bool audit_, conserve_;
+  model::AuditSettings settings_;  ///< of the bundle's furnace
   field::Mesh mesh_;
   field::InputSchema schema_;
   std::vector<field::FieldInfo> fields_;  //!< chosen, in the bundle's order

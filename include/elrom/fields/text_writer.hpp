@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "elrom/fields/arguments.hpp"
 #include "elrom/model/prediction_file.hpp"
 
 namespace elrom::fields {
@@ -28,8 +27,5 @@ void write_sfw3d(const model::PredictionFrame& frame, const Coordinates& coordin
 /// Fluent interpolation file, version 3, text.
 void write_fluent(const model::PredictionFrame& frame, const Coordinates& coordinates,
                   const model::Prediction& prediction, std::string& text);
-/// One of them. @param format not hdf
-void write_text(Format format, const model::PredictionFrame& frame, const Coordinates& coordinates,
-                const model::Prediction& prediction, std::string& text);
 
 }  // namespace elrom::fields

@@ -17,7 +17,7 @@
 namespace elrom::ingest {
 
 /// A case as the checks look at it, on any mesh; nothing is owned.
-struct CaseView {
+struct CheckedCase {
   std::string name;
   double load = std::numeric_limits<double>::quiet_NaN();
   const field::InputSchema* schema = nullptr;  ///< nullptr or empty: no inputs known
@@ -71,6 +71,6 @@ struct CaseSummary {
 };
 
 /// One pass over the case's cells; cells that are not finite are left out of every mean.
-[[nodiscard]] CaseSummary summarise(const CaseView& view);
+[[nodiscard]] CaseSummary summarise(const CheckedCase& view);
 
 }  // namespace elrom::ingest

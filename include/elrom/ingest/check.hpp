@@ -2,6 +2,7 @@
 // Suspicious data: what `elrom-data check` tells, and what import refuses or drops.
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,20 +31,23 @@ struct Finding {
   std::string message;     ///< one sentence, complete in itself
 };
 
-[[nodiscard]] CaseView view_of(const CfdCase& one);
+[[nodiscard]] CheckedCase view_of(const CfdCase& one);
 /// @param fields (n_fields, n_cells); everything must outlive the view
-[[nodiscard]] CaseView view_of(const field::CaseRecord& record, const MatrixF& values,
-                               const field::Mesh& mesh, const field::InputSchema& schema,
-                               std::span<const field::FieldInfo> fields);
+[[nodiscard]] CheckedCase view_of(const field::CaseRecord& record, const MatrixF& values,
+                                  const field::Mesh& mesh, const field::InputSchema& schema,
+                                  std::span<const field::FieldInfo> fields);
 
 /// Takes cases one after another and keeps a summary of each. Thread rule: one thread at a time.
 class Checker {
  public:
-  void add(const CaseView& view);
+  void add(const CheckedCase& view);
   /// Every case of a store; one case is resident at a time. A case whose checksum fails becomes a finding.
   void add(const field::SnapshotStore& store);
   /// A file that could not even be read.
   void add_unreadable(const std::string& name, const std::string& reason);
+
+  /// Leaves cases out of every comparison but that of single cells (dead_cells).
+  void forget(const std::set<std::string>& names);
 
   [[nodiscard]] const std::vector<CaseSummary>& cases() const { return cases_; }
   /// Everything found, worst first, in the order of the cases.

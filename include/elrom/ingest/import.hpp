@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -17,21 +18,21 @@
 namespace elrom::ingest {
 
 struct ImportOptions {
-  std::filesystem::path mesh;                ///< the reduced mesh; not needed to add to a store
-  std::filesystem::path store;               ///< created, or added to
+  std::filesystem::path mesh;   ///< the reduced mesh; not needed to add to a store
+  std::filesystem::path store;  ///< created, or added to
+  /// Furnace description; empty: the one beside the mesh, named as the mesh is (.toml), where there is one.
+  std::filesystem::path furnace;
   std::vector<std::filesystem::path> files;  ///< in the order in which they enter the store
   std::filesystem::path cases;  ///< table of boundary conditions, for formats that carry none; may be empty
   std::vector<std::string> fields;  ///< of a new store; empty: the nine standard fields
   int n_threads = 1;
-  /// Called for every case as read; throws to refuse it, gives
-  /// false to leave it out. Empty: every case is taken.
-  std::function<bool(const CfdCase&)> accept = {};
   /// Sees every case as it enters the store, on the reduced mesh. Empty: nobody looks.
   std::function<void(const field::Snapshot&, const field::Mesh&, const field::InputSchema&,
                      std::span<const field::FieldInfo>)>
       watch = {};
-  /// Called once before the store is replaced; throws to leave it as it was.
-  std::function<void()> confirm = {};
+  /// Called once before the store is replaced: names of the new cases that are not to stay. Throws to leave
+  /// the store as it was. Empty: all stay.
+  std::function<std::set<std::string>()> leave_out = {};
 };
 
 struct ImportSummary {
@@ -41,10 +42,13 @@ struct ImportSummary {
   std::size_t n_outside = 0, n_cells = 0;  ///< reduced cells outside the hull of the last case's cell centres
 };
 
-/// Memory: one case at a time. The same files give the same bytes.
+/// Memory: one case at a time; a file is read once. The same files give the same bytes.
+/// An existing store keeps its furnace description, unless `furnace` names another; without files, that is
+/// all that is done.
 /// @throws InputError naming file and dataset, InputError for a store of another mesh, a second case of one
 ///         name or content, a boundary condition that is missing or unknown (with the nearest name), a
-///         missing field; Interrupted. The store is then as it was.
+///         missing field, a furnace description that is wrong or not of these cases; Interrupted. The store
+///         is then as it was.
 ImportSummary import_cases(const ImportOptions& options, Log& log, const std::stop_token& stop = {});
 
 }  // namespace elrom::ingest

@@ -12,13 +12,13 @@
 
 namespace elrom::ingest {
 
-/// Keys: kind, n_cases, load {min, max}, mesh, inputs [{name, unit, min, max, mean}], fields [{name, unit,
-/// min, mean, max}], cases [{name, load, source ...}], digest.
+/// Keys: kind, n_cases, load {min, max}, mesh, furnace (null: not described), inputs [{name, unit, min, max,
+/// mean}], fields [{name, unit, min, mean, max}], cases [{name, load, source ...}], digest.
 [[nodiscard]] nlohmann::ordered_json describe_store(const field::SnapshotStore& store);
 [[nodiscard]] nlohmann::ordered_json describe_mesh(const field::Mesh& mesh);
 [[nodiscard]] nlohmann::ordered_json describe_case(const CfdCase& one);
-/// Keys: kind, method, mesh, inputs, fields [{name, unit, model}], cases (those it was trained on),
-/// provenance, accuracy, digest.
+/// Keys: kind, method, mesh, furnace (null: not described), inputs, fields [{name, unit, model}], cases (those
+/// it was trained on), provenance, accuracy, digest.
 [[nodiscard]] nlohmann::ordered_json describe_bundle(const model::BundleReader& bundle);
 
 /// Keys: kind, case, load, validity, validity_reason, nearest, method, builds, interval_level (null: not

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "elrom/base/error.hpp"
-#include "elrom/base/version.hpp"
+#include "elrom/io/file_kind.hpp"
 
 namespace elrom::io {
 
@@ -177,8 +177,8 @@ void survive(const std::filesystem::path& path, const std::string& work_name,
              const std::function<void()>& work);
 
 /// Header of every file of ours: attributes `kind`, `format` = [major, minor], `program`.
-void write_kind(const Hdf5Object& object, std::string_view kind, FormatVersion version);
-/// @return the file's version. @throws InputError for another kind, or a major version other than ours
-FormatVersion check_kind(const Hdf5Object& object, std::string_view kind, FormatVersion ours);
+void write_kind(const Hdf5Object& object, const FileKind& kind);
+/// @return the file's version. @throws InputError as io::check_kind (file_kind.hpp)
+FormatVersion check_kind(const Hdf5Object& object, const FileKind& expected);
 
 }  // namespace elrom::io

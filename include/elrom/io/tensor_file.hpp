@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "elrom/io/file_kind.hpp"
 #include "elrom/math/matrix.hpp"
 
 namespace elrom::io {
@@ -120,5 +121,9 @@ class TensorFile {
   std::string where_ = "memory";
   mutable std::string digest_;
 };
+
+/// Texts `kind`, `format` and `program`; the file's version; as io::check_kind (file_kind.hpp).
+void write_kind(TensorFile& file, const FileKind& kind);
+FormatVersion check_kind(const TensorFile& file, const FileKind& expected);
 
 }  // namespace elrom::io

@@ -9,11 +9,7 @@
 #include "elrom/io/stage_cache.hpp"
 #include "elrom/methods/method.hpp"
 #include "elrom/model/banded_networks.hpp"
-#include "elrom/networks/banding.hpp"
-#include "elrom/networks/records.hpp"
-#include "elrom/networks/settings.hpp"
-#include "elrom/networks/trainer.hpp"
-#include "elrom/networks/trial_store.hpp"
+#include "elrom/networks/stages.hpp"
 
 namespace elrom::methods {
 
@@ -32,6 +28,7 @@ class NetworksMethod final : public Method {
                  const io::StageCache* cache = nullptr, networks::TrialStore* trials = nullptr);
 
   [[nodiscard]] std::string name() const override { return "networks"; }
+  [[nodiscard]] std::string key(const std::string& field) const override;
   [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const override;
@@ -57,20 +54,23 @@ class NetworksMethod final : public Method {
                                                       const FitContext& context) const;
 
  private:
-  [[nodiscard]] std::vector<networks::Part> split(const field::FieldData& data,
-                                                  std::span<const std::size_t> cases,
-                                                  const FitContext& context) const;
-  [[nodiscard]] networks::RecordSet screening_records(const field::FieldData& data,
-                                                      std::span<const std::size_t> cases,
-                                                      const FitContext& context) const;
-  [[nodiscard]] networks::RecordOptions record_options(const std::string& field) const;
+  [[nodiscard]] networks::RecordSource screened_records(const field::FieldData& data,
+                                                        std::span<const std::size_t> cases,
+                                                        const FitContext& context) const;
+  [[nodiscard]] networks::RecordSource records(const field::FieldData& data,
+                                               std::span<const std::size_t> cases,
+                                               const FitContext& context) const;
+  [[nodiscard]] NetworkPlan plan(const field::FieldData& data, std::span<const std::size_t> cases,
+                                 const networks::RecordSource& records, const FitContext& context) const;
   [[nodiscard]] std::vector<model::Submodel> build(const field::FieldData& data, const NetworkPlan& plan,
-                                                   const networks::RecordSet& set, const std::string& digest,
-                                                   int n_builds, const FitContext& context,
-                                                   int n_threads) const;
+                                                   const networks::RecordSource& records, int n_builds,
+                                                   const FitContext& context, int n_threads) const;
   [[nodiscard]] std::unique_ptr<model::FieldModel> assemble(const field::FieldData& data,
-                                                            networks::RecordSet set,
+                                                            const networks::RecordSet& set,
                                                             std::vector<model::Submodel> submodels) const;
+  [[nodiscard]] networks::FieldSettings settings_of(const field::FieldData& data) const {
+    return networks::settings_of_field(settings_, data.info.name);
+  }
 
   networks::Settings settings_;
   std::shared_ptr<const networks::Trainer> trainer_;

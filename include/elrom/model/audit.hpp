@@ -22,29 +22,23 @@
 
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/field/furnace.hpp"
 #include "elrom/field/mesh.hpp"
 
 namespace elrom::model {
 
-/// Where gas enters: all mass-flow inputs whose names match
-/// `inputs` (shell style) enter between these heights.
-struct GasInlet {
-  std::string inputs;
-  double z_low_m = 0, z_high_m = 0;
-};
-
 struct AuditSettings {
-  double solid_density = 2400;       ///< [kg/m3]
-  double ambient_pressure = 101325;  ///< [Pa]
-  double gas_constant = 287.05;      ///< dry air [J/(kg K)]
-  double gravity = 9.80665;          ///< [m/s2]
-  std::vector<GasInlet> inlets;      ///< empty: no gas balance
+  double solid_density = 2400;         ///< [kg/m3]
+  double ambient_pressure = 101325;    ///< [Pa]
+  double gas_constant = 287.05;        ///< dry air [J/(kg K)]
+  double gravity = 9.80665;            ///< [m/s2]
+  std::vector<field::Opening> inlets;  ///< empty: no gas balance
   double outlet_low_m =
       std::numeric_limits<double>::infinity();  ///< above it, gas leaves and no balance is drawn
 };
 
-/// Openings of the shipped furnace: grid at the bottom, inlets on the walls up to 7.12 m, outlet from 41.3 m.
-[[nodiscard]] AuditSettings shipped_furnace_audit();
+/// With the openings, the outlet and the solids of a furnace; nothing: without a gas balance.
+[[nodiscard]] AuditSettings audit_settings(const std::optional<field::Furnace>& furnace);
 
 /// One case's fields, borrowed: SI, field by field in the
 /// order of `fields`, (fields.size() * mesh.n_cells()).
@@ -94,7 +88,7 @@ struct Audit {
   [[nodiscard]] std::optional<FlowRange> net_solid_flow() const;
 };
 
-[[nodiscard]] Audit audit(const CaseView& view, const AuditSettings& settings = shipped_furnace_audit());
+[[nodiscard]] Audit audit(const CaseView& view, const AuditSettings& settings);
 /// A few lines for a terminal.
 [[nodiscard]] std::string to_text(const Audit& audit);
 /// JSON object, for files.
@@ -114,12 +108,12 @@ struct ConservationChange {
 
 /// Changes `values` (layout of CaseView) as little as possible so that the solids sum to the input inventory
 /// and, in every plane with a balance, the gas flow equals the inlets' below. "Little" is sum V (change /
-/// scale)^2: the correction is scale^2 times one multiplier per constraint, held inside the bounds of the
-/// volume fraction.
+/// scale)^2: the correction is scale^2 times one multiplier per constraint, held inside the bounds that
+/// the view gives the volume fraction.
 /// @param scale expected error of each value, same layout as values (e.g. conformal
 ///        half-widths); empty: the volume fraction itself, and 1 m/s. @throws
 ///        NumericalError when no fraction below the packing limit holds the inventory
-ConservationChange conserve(const CaseView& view, std::span<float> values, std::span<const float> scale = {},
-                            const AuditSettings& settings = shipped_furnace_audit());
+ConservationChange conserve(const CaseView& view, std::span<float> values, std::span<const float> scale,
+                            const AuditSettings& settings);
 
 }  // namespace elrom::model

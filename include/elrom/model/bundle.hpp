@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/field/furnace.hpp"
 #include "elrom/field/mesh.hpp"
 #include "elrom/field/planes.hpp"
 #include "elrom/model/field_model.hpp"
@@ -34,6 +36,7 @@ struct Bundle {
   BundleInfo info;
   field::Mesh mesh;
   Guard guard;
+  std::optional<field::Furnace> furnace;  ///< of the training cases, where somebody described it
   std::map<std::string, std::shared_ptr<const FieldModel>> models;        ///< by field name
   std::map<std::string, std::shared_ptr<const Uncertainty>> uncertainty;  ///< by field name; may be missing
 
@@ -62,6 +65,8 @@ class BundleReader {
   /// @throws InputError for a mesh that is broken, UsageError when it lacks a plane of `part`
   [[nodiscard]] field::Mesh mesh(const MeshPart& part = {}) const;
   [[nodiscard]] Guard guard() const;
+  /// Parsed when asked for. Nothing in bundles before 1.1, or of cases whose furnace nobody described.
+  [[nodiscard]] std::optional<field::Furnace> furnace() const;
   [[nodiscard]] std::unique_ptr<FieldModel> model(const std::string& field, const Wanted& wanted = {}) const;
   /// nullptr when the bundle has none for that field
   [[nodiscard]] std::unique_ptr<Uncertainty> uncertainty(const std::string& field) const;

@@ -15,12 +15,12 @@ namespace elrom::model {
 /// threads, each with a Workspace of its own.
 class BlendModel final : public FieldModel {
  public:
-  struct Part {
+  struct Member {
     std::vector<double> weights;  ///< (n_columns), or one for all columns
     std::shared_ptr<const FieldModel> model;
   };
   /// @throws InputError without parts, or when their inputs, planes, columns or numbers of weights do not fit
-  explicit BlendModel(std::vector<Part> parts, const std::string& where = "memory");
+  explicit BlendModel(std::vector<Member> parts, const std::string& where = "memory");
 
   [[nodiscard]] std::string kind() const override { return "blend"; }
   [[nodiscard]] std::size_t n_inputs() const override { return parts_.front().model->n_inputs(); }
@@ -33,7 +33,7 @@ class BlendModel final : public FieldModel {
                                                         const Wanted& wanted);
 
  private:
-  std::vector<Part> parts_;
+  std::vector<Member> parts_;
 };
 
 /// Mean over the symmetry group of g^-1(model(g(inputs))): exactly symmetric, and less noisy than the model

@@ -1,11 +1,13 @@
 #pragma once
-// Records of one field: one plane of one case each, standardised
-// (source: eq. 6.1). Internal to the networks' method.
+// Records of one field: one plane of one case each, standardised (source: eq. 6.1).
+
+#include <mutex>
 
 #include "elrom/field/case_set.hpp"
 #include "elrom/model/banded_networks.hpp"
 #include "elrom/networks/banding.hpp"
 #include "elrom/networks/screening.hpp"
+#include "elrom/networks/split.hpp"
 #include "elrom/networks/trainer.hpp"
 
 namespace elrom::networks {
@@ -30,9 +32,34 @@ struct RecordSet {
   ScreeningData records;  ///< inputs: scaled boundary conditions, then the plane's encoding
 };
 
-/// @param part (cases.size() * n_planes), case by case. Scalers see cases with a training record only.
-[[nodiscard]] RecordSet make_records(const field::FieldData& data, std::span<const std::size_t> cases,
-                                     const std::vector<Part>& part, const RecordOptions& options);
+/// @param part (n_cases * n_planes), case by case. Scalers see cases with a training record only.
+[[nodiscard]] RecordSet make_records(const field::FieldRows& data, const std::vector<Part>& part,
+                                     const RecordOptions& options);
+
+/// All that records depend on beside the data.
+struct RecordRecipe {
+  RecordOptions options;
+  PartRule parts;
+  base::Seed seed{1};  ///< of the split into parts
+};
+
+/// The records of some cases of a field, made when they are first asked for: a stage that is kept needs only
+/// their key. Thread rule: every member from any thread.
+class RecordSource {
+ public:
+  /// @param data must outlive it
+  RecordSource(const field::FieldData& data, std::span<const std::size_t> cases, RecordRecipe recipe);
+  [[nodiscard]] const RecordSet& get() const;
+  /// Of the data and the recipe.
+  [[nodiscard]] const std::string& key() const { return key_; }
+
+ private:
+  field::FieldRows data_;
+  RecordRecipe recipe_;
+  std::string key_;
+  mutable std::once_flag once_;
+  mutable RecordSet set_;
+};
 
 /// Records and columns of one band; with a mask, records of
 /// planes that the band does not answer for are left out.

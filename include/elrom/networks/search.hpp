@@ -36,8 +36,8 @@ class SearchSpace {
 
  private:
   struct Axis {
+    std::string name;
     std::vector<double> values;  ///< one a bin
-    std::function<void(Hyperparameters&, double)> set;
   };
   std::vector<Axis> axes_;
   model::Activation activation_;

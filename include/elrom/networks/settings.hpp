@@ -3,6 +3,7 @@
 // and meaning in one table.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,15 @@
 namespace elrom::networks {
 
 struct SplitSettings {
-  std::vector<std::string> held_out{"load_*", "rep*"};  ///< names or patterns of cases never built with
-  std::string by = "case";                              ///< "case" | "record" (leaks; to show that it does)
-  std::vector<double> fractions{0.7, 0.2, 0.1};         ///< train, validation, test
+  /// Names or patterns of cases never built with; nothing: those of the store's furnace.
+  std::optional<std::vector<std::string>> held_out;
+  std::string by = "case";                       ///< "case" | "record" (leaks; to show that it does)
+  std::vector<double> fractions{0.7, 0.2, 0.1};  ///< train, validation, test
 };
 
 struct SymmetrySettings {
   bool enabled = true;
-  /// Empty: those of the shipped furnace, where schema and mesh allow.
+  /// Empty: those of the store's furnace, where schema and mesh allow.
   std::vector<field::MirrorDeclaration> mirrors;
 };
 

@@ -24,8 +24,17 @@ enum class Part : std::uint8_t { train, validation, test };
 [[nodiscard]] std::vector<Part> split_cases(std::span<const double> loads, std::span<const double> fractions,
                                             base::Seed seed);
 
+/// How the cases that are not held out are dealt out.
+struct PartRule {
+  std::string by = "case";
+  std::vector<double> fractions = SplitSettings{}.fractions;
+};
+[[nodiscard]] inline PartRule part_rule(const SplitSettings& settings) {
+  return {settings.by, settings.fractions};
+}
+
 /// Part of every record, (n_cases * n_planes), case by case.
 [[nodiscard]] std::vector<Part> split_records(std::span<const double> loads, std::size_t n_planes,
-                                              const SplitSettings& settings, base::Seed seed);
+                                              const PartRule& rule, base::Seed seed);
 
 }  // namespace elrom::networks

@@ -11,19 +11,9 @@
 #include "elrom/base/random.hpp"
 #include "elrom/math/matrix.hpp"
 #include "elrom/model/network.hpp"
+#include "elrom/networks/hyperparameters.hpp"
 
 namespace elrom::networks {
-
-struct Hyperparameters {
-  double learning_rate = 1e-3;
-  int n_layers = 2;  ///< hidden layers
-  int n_units = 64;  ///< in each hidden layer
-  int batch_size = 64;
-  double weight_decay = 0;  ///< decoupled (AdamW)
-  double dropout = 0;
-  model::Activation activation = model::Activation::relu;
-  bool operator==(const Hyperparameters&) const = default;
-};
 
 struct TrainingBudget {
   int max_epochs = 200;
@@ -66,6 +56,7 @@ class Trainer {
  public:
   virtual ~Trainer() = default;
   [[nodiscard]] virtual std::string name() const = 0;
+  [[nodiscard]] std::string key() const { return name(); }  ///< in the keys of stages that train
   /// The same arguments give the same bits. @param checkpoint file to resume from and to save to; empty: none
   /// @throws Interrupted on `stop`
   [[nodiscard]] virtual TrainingResult train(const TrainingProblem& problem,

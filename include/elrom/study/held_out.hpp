@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "elrom/field/snapshot_store.hpp"
+
 namespace elrom::study {
 
 /// Rows of a store: those a study may build with, and those it never looks at.
@@ -16,6 +18,7 @@ struct HeldOut {
 /// when fewer than two cases are left to build with
 [[nodiscard]] HeldOut hold_out(const std::vector<std::string>& names,
                                const std::vector<std::string>& patterns);
+[[nodiscard]] HeldOut hold_out(const field::SnapshotStore& store, const std::vector<std::string>& patterns);
 
 /// split.json of a study: names by part.
 struct SplitNames {

@@ -1,15 +1,12 @@
 #pragma once
 // Settings of a study: study.toml and the command line, resolved over the defaults of an effort level.
-// Every setting, its default and its meaning stand in one table (train/study/settings.cpp); keys that are not
-// in it are refused with the nearest known one.
+// Every setting and its meaning stand in one table (train/study/settings_table.cpp); keys that are not in it
+// are refused with the nearest known one.
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "elrom/networks/settings.hpp"
@@ -53,8 +50,5 @@ struct SettingHelp {
   std::string key, value, meaning;
 };
 [[nodiscard]] std::vector<SettingHelp> settings_help();
-
-/// Left-right and front-rear mirrors of the shipped furnace.
-[[nodiscard]] std::vector<field::MirrorDeclaration> furnace_mirrors();
 
 }  // namespace elrom::study

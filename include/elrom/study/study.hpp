@@ -72,8 +72,13 @@ class Study {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Names and patterns of the cases that a study never builds with: the settings', else those of the store's
+/// furnace. That there are none is told.
+[[nodiscard]] std::vector<std::string> held_out_patterns(const field::SnapshotStore& store,
+                                                         const Settings& settings, Log& log);
+
 /// Cases of a store that a study builds with: its held-out cases left out, its mirrors resolved.
-/// Mirrors that the settings name must resolve; the shipped furnace's are used where they do.
+/// Mirrors that the settings name must resolve; those of the store's furnace are used where they do.
 [[nodiscard]] field::CaseSet study_cases(const field::SnapshotStore& store, const Settings& settings,
                                          const std::vector<std::size_t>& rows, Log& log);
 

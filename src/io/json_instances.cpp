@@ -1,0 +1,6 @@
+#include "json_instances.hpp"
+
+ELROM_JSON_INSTANCES(, nlohmann::json);
+ELROM_JSON_INSTANCES(, nlohmann::ordered_json);
+template class nlohmann::basic_json<>;
+template class nlohmann::basic_json<nlohmann::ordered_map>;
