@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "elrom/fields/arguments.hpp"
-#include "elrom/model/prediction_file.hpp"
 #include "elrom/fields/physics.hpp"
 #include "elrom/fields/text_writer.hpp"
+#include "elrom/model/prediction_file.hpp"
 #include "timing.hpp"
 
 namespace elrom::fields {
