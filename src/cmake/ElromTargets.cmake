@@ -40,6 +40,18 @@ function(elrom_precompile target)
   target_compile_options(${target} PRIVATE -fpch-preprocess)  # lets ccache see through the precompiled header
 endfunction()
 
+# The header of the libraries is of a target that links nothing: what one of them defines beside (fmt's FMT_HEADER_ONLY) must
+# not be in it, or GCC takes it for none of the others.
+function(elrom_library_headers)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/library_headers.cpp CONTENT "")
+  add_library(elrom-library-headers OBJECT ${PROJECT_BINARY_DIR}/library_headers.cpp)
+  set_target_properties(elrom-library-headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(elrom-library-headers PRIVATE Eigen3::Eigen Threads::Threads ${ELROM_JSON})
+  target_compile_definitions(elrom-library-headers PRIVATE ${ELROM_DEFINITIONS})
+  elrom_compile_options(elrom-library-headers)
+  elrom_precompile(elrom-library-headers ${ELROM_COMMON_HEADERS})
+endfunction()
+
 # elrom_install(name) -> target elrom-<name> as component <name> of find_package(elrom)
 function(elrom_install name)
   install(TARGETS elrom-${name} EXPORT elrom-${name}-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -61,13 +73,11 @@ function(elrom_library name)
   target_include_directories(elrom-${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(elrom-${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS} ${ELROM_JSON})
   elrom_compile_options(elrom-${name})
-  # One header parsed for all, core's; LibTorch's has its own.
+  # One header parsed for all; LibTorch's has its own.
   if(name STREQUAL torch)
     elrom_precompile(elrom-torch <torch/torch.h> ${PROJECT_SOURCE_DIR}/src/io/json_instances.hpp)
-  elseif(name STREQUAL core)
-    elrom_precompile(elrom-core ${ELROM_COMMON_HEADERS})
   else()
-    target_precompile_headers(elrom-${name} REUSE_FROM elrom-core)
+    target_precompile_headers(elrom-${name} REUSE_FROM elrom-library-headers)
     target_compile_options(elrom-${name} PRIVATE -fpch-preprocess)
   endif()
   elrom_install(${name})
