@@ -1,6 +1,9 @@
 #pragma once
 // Stages of one method, field by field, put together into a bundle. Internal to the study.
 
+#include <optional>
+
+#include "elrom/field/furnace.hpp"
 #include "elrom/methods/method.hpp"
 #include "field_stage.hpp"
 
