@@ -131,6 +131,27 @@ def test_settings_have_units(predictor, case):
     assert changed.values[2] == case.values[2] and case.values[0] != 10
 
 
+def test_audit_and_repair_are_those_of_the_program(tmp_path):
+    inputs = {"primary_air": 7, "burner_left": 14, "solids_inventory": 60000, "gas_temperature": 1100}
+    settings = ["primary_air=7", "burner_left=14", "solids_inventory=60 t", "gas_temperature=1100"]
+    program("elrom-predict", "--bundle", SAMPLE / "furnace.elrom", *(f"--set={one}" for one in settings), "--audit",
+            "--conserve", "--output", tmp_path)
+    predictor = elrom.Predictor(SAMPLE / "furnace.elrom")
+    assert [info.name for info in predictor.inputs] == list(inputs)
+
+    plain = predictor.predict(list(inputs.values()))
+    repaired = predictor.predict(list(inputs.values()), audit=True, conserve=True)
+
+    assert plain.audit is None and plain.change is None
+    assert repaired.change["solids_kg"] != 0
+    assert repaired.audit["solids_kg"] == pytest.approx(60000, rel=1e-5)
+    assert not np.array_equal(repaired["solid_volume_fraction"], plain["solid_volume_fraction"])
+    assert np.array_equal(repaired["pressure"], plain["pressure"])
+    assert "solids added" in repaired.physics_text() and "net solid flow" in repaired.physics_text()
+    repaired.write(tmp_path / "python.hdf")
+    assert (tmp_path / "python.hdf").read_bytes() == (tmp_path / "case.hdf").read_bytes()
+
+
 def test_audit_and_repair_are_refused_with_the_reason(predictor, case):
     with pytest.raises(elrom.UsageError, match="--conserve needs input 'solids_inventory'"):
         predictor.predict(case, conserve=True)

@@ -1,6 +1,7 @@
 // make-sample-bundle FOLDER [full [BUILDS [UNITS [half]]]]: FOLDER/model.elrom with random weights,
 // FOLDER/cases.csv. "full": nine fields, 26 inputs, 66 planes of 840 columns, four submodels a field, three
 // hidden layers.
+// FOLDER/furnace.elrom is the small one with inputs and a furnace that physics audits know.
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
@@ -35,6 +36,15 @@ void write_cases(const std::filesystem::path& path, const elrom::test::BundleSiz
   file << "\n";
 }
 
+elrom::model::Bundle with_furnace(elrom::model::Bundle bundle) {
+  bundle.info.schema = elrom::field::InputSchema({{"primary_air", "kg/s", "kg/s"},
+                                                  {"burner_left", "kg/s", "kg/s"},
+                                                  {"solids_inventory", "kg", "t"},
+                                                  {"gas_temperature", "K", "K"}});
+  bundle.furnace = elrom::field::read_furnace(ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.toml");
+  return bundle;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -43,6 +53,7 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(folder);
     const auto size = size_of(argc, argv);
     elrom::test::sample_bundle(size).write(folder / "model.elrom");
+    if (argc < 3) with_furnace(elrom::test::sample_bundle(size)).write(folder / "furnace.elrom");
     write_cases(folder / "cases.csv", size);
     return 0;
   });
