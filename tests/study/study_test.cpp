@@ -20,19 +20,20 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// "Trains" a network without hidden layers: the targets' mean as bias. Counts its calls; can be killed.
+// "Trains" a network without hidden layers: the targets' mean as bias, and weights that follow rate and seed.
+// Counts its calls; can be killed.
 class MeanTrainer final : public networks::Trainer {
  public:
   [[nodiscard]] std::string name() const override { return "mean"; }
   [[nodiscard]] networks::TrainingResult train(const networks::TrainingProblem& problem,
                                                const networks::Hyperparameters& hyperparameters,
-                                               const networks::TrainingBudget&, base::Seed,
+                                               const networks::TrainingBudget&, base::Seed seed,
                                                networks::TrainingMonitor*, const std::stop_token&,
                                                const std::filesystem::path&) const override {
     if (++calls == kill_at) throw Interrupted("killed");
     const auto n_in = problem.train_inputs.cols(), n_out = problem.train_targets.cols();
     const Eigen::RowVectorXf mean = problem.train_targets.colwise().mean();
-    const float slope = static_cast<float>(hyperparameters.learning_rate);
+    const auto slope = static_cast<float>(hyperparameters.learning_rate * (1 + base::Random(seed).uniform()));
     const std::vector<float> bias(mean.data(), mean.data() + n_out);
     networks::TrainingResult result;
     result.network = model::Network({{io::Tensor::copy(MatrixF(MatrixF::Constant(n_out, n_in, slope))),
