@@ -226,8 +226,8 @@ class Averages {
   Eigen::Index n_;
   MatrixD gas_momentum_, solid_momentum_;
   Eigen::VectorXd gas_weight_, mass_, mass_diameter_, fraction_, pressure_;
-  std::vector<std::pair<double, double>>
-      sizes_;  //!< diameter [m] and mass [kg] of every parcel at every instant
+  //! Diameter [m] and mass [kg] of every parcel at every instant
+  std::vector<std::pair<double, double>> sizes_;
   double n_instants_ = 0;
 };
 

@@ -1,4 +1,5 @@
-// Predicts one case and prints the plane averages of a field: bundle, cases file, case, field [, file to write].
+// Predicts one case and prints the plane averages of a field:
+// bundle, cases file, case, field [, file to write].
 #include <cstdio>
 
 #include "elrom/base/app.hpp"

@@ -1,4 +1,5 @@
-/* Predicts one case and prints the plane averages of a field: bundle, cases file, case, field [, file to write]. */
+/* Predicts one case and prints the plane averages of a field: bundle, cases file, case,
+ * field [, file to write]. */
 #include <elrom/model/elrom.h>
 #include <math.h>
 #include <stdio.h>

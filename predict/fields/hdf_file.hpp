@@ -1,5 +1,6 @@
 #pragma once
-// A prediction's .hdf file on its way: all of it but the values is written first, and each field when it is ready.
+// A prediction's .hdf file on its way: all of it but the values
+// is written first, and each field when it is ready.
 
 #include <atomic>
 #include <functional>

@@ -1,5 +1,6 @@
 #pragma once
-// What a run of elrom-predict has open before its first case: cases, model, what is written of it, and where it lies.
+// What a run of elrom-predict has open before its first case:
+// cases, model, what is written of it, and where it lies.
 
 #include <optional>
 #include <vector>

@@ -32,7 +32,8 @@ struct Desk {
   double compute = 0, write = 0;
 };
 
-/// What one run does with each of its cases. Thread rule: predict() from any thread, each with a desk of its own.
+/// What one run does with each of its cases. Thread rule:
+/// predict() from any thread, each with a desk of its own.
 class CaseRunner {
  public:
   CaseRunner(const Arguments& arguments, const Opened& opened)

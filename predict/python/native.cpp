@@ -1,5 +1,6 @@
-// elrom._native: the core as numpy arrays. Users see the package elrom, which is typed and explained; shapes are checked
-// here. Files by the HDF5 library are read and written while Python's lock is held: that library takes one thread at a time.
+// elrom._native: the core as numpy arrays. Users see the package elrom, which is typed
+// and explained; shapes are checked here. Files by the HDF5 library are read and
+// written while Python's lock is held: that library takes one thread at a time.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>

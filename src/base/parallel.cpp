@@ -33,8 +33,8 @@ struct Share {
   std::fenv_t arithmetic{};  ///< rounding and denormals, as the caller has set them
 };
 
-/// Signals are for the program's own threads, which may be asleep in a call that a signal has to end. Those that a thread causes
-/// itself stay its own.
+/// Signals are for the program's own threads, which may be asleep in a call that a signal has to end. Those
+/// that a thread causes itself stay its own.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -66,7 +66,8 @@ class Worker {
     state_ = State::offered;
     changed_.notify_one();
   }
-  /// Afterwards the worker does not know the share any more: it has finished with it, or it never woke up for it.
+  /// Afterwards the worker does not know the share any more: it
+  /// has finished with it, or it never woke up for it.
   void take_back() {
     std::unique_lock lock(mutex_);
     if (state_ == State::offered) state_ = State::idle;
@@ -84,9 +85,9 @@ class Worker {
 
   Worker() : allowed_(allowed_processors()) {}
 
-  /// The thread begins on another processor than its creator's. Left to itself, the kernel often queues a new thread behind its
-  /// creator and moves it only milliseconds later, at its next balancing: a whole prediction is no longer than that.
-  /// Once running, the thread may go wherever the process may.
+  /// The thread begins on another processor than its creator's. Left to itself, the kernel often queues a new
+  /// thread behind its creator and moves it only milliseconds later, at its next balancing: a whole
+  /// prediction is no longer than that. Once running, the thread may go wherever the process may.
   bool begin() {
     cpu_set_t others = allowed_;
     const int here = sched_getcpu();
@@ -132,7 +133,8 @@ class Worker {
   const Share* share_ = nullptr;
 };
 
-/// The workers that nobody uses at the moment. Calls at the same time, and calls inside calls, find fewer of them and start more.
+/// The workers that nobody uses at the moment. Calls at the same time,
+/// and calls inside calls, find fewer of them and start more.
 class Team {
  public:
   /// Never destroyed: its workers sleep in it until the process ends.
@@ -175,7 +177,8 @@ class Team {
     idle_.reserve(most_idle);
     pthread_atfork([] { instance().mutex_.lock(); }, [] { instance().mutex_.unlock(); }, forget_in_child);
   }
-  /// A forked child has one thread: the workers stayed with the parent, and the child starts its own when it needs them.
+  /// A forked child has one thread: the workers stayed with the
+  /// parent, and the child starts its own when it needs them.
   static void forget_in_child() {
     instance().idle_.clear();
     instance().mutex_.unlock();

@@ -1,6 +1,6 @@
 #pragma once
-// SHA-256 of several texts on one core. A processor's SHA instructions wait for each other within a text; two texts in step
-// fill the gaps, and take little longer than one. Internal to base.
+// SHA-256 of several texts on one core. A processor's SHA instructions wait for each other within a text; two
+// texts in step fill the gaps, and take little longer than one. Internal to base.
 
 #include <array>
 #include <cstddef>

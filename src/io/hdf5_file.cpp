@@ -21,8 +21,8 @@ hid_t untimed(hid_t property_class) {
 hid_t plain_dataset() {
   static const hid_t list = [] {
     const hid_t created = untimed(H5P_DATASET_CREATE);
-    // A place in the file when created, not when written: in whatever order fields become ready, a file is the
-    // same bytes.
+    // A place in the file when created, not when written: in whatever
+    // order fields become ready, a file is the same bytes.
     H5Pset_alloc_time(created, H5D_ALLOC_TIME_EARLY);
     return created;
   }();

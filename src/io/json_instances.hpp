@@ -1,6 +1,6 @@
 #pragma once
-// JSON's code, compiled once (json_instances.cpp) instead of in each of the sources that use it. Comes to them with the
-// precompiled header; without it they compile their own, so nobody needs to include this.
+// JSON's code, compiled once (json_instances.cpp) instead of in each of the sources that use it. Comes to
+// them with the precompiled header; without it they compile their own, so nobody needs to include this.
 
 #include <nlohmann/json.hpp>
 #include <string>

@@ -1,5 +1,6 @@
-// bench-parallel: what one call of base::parallel_for costs beside starting threads anew, as a simulation feels it that makes one
-// call a time step: the same small pieces of arithmetic, one a thread, by the team, by new threads, and on one thread.
+// bench-parallel: what one call of base::parallel_for costs beside starting threads anew,
+// as a simulation feels it that makes one call a time step: the same small pieces of
+// arithmetic, one a thread, by the team, by new threads, and on one thread.
 
 #include "elrom/base/parallel.hpp"
 

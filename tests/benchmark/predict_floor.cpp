@@ -48,8 +48,8 @@ double read_rate(const std::filesystem::path& path, int n_threads) {
   return static_cast<double>(size) / seconds;
 }
 
-/// A file of that size written in one go, as plain as can be; with `sync`, waiting until its bytes are on the disk, as
-/// elrom-predict leaves its files.
+/// A file of that size written in one go, as plain as can be; with `sync`, waiting until its bytes are on the
+/// disk, as elrom-predict leaves its files.
 double write_rate(const std::filesystem::path& folder, std::size_t size, bool sync) {
   const std::vector<char> bytes(size, 'x');
   const auto path = folder / "floor.tmp", target = folder / "floor";

@@ -16,8 +16,8 @@ struct Tally {
   std::size_t passed = 0, of = 0;
   std::vector<std::string> failures;  ///< what went wrong, one line each (the first few)
   std::string skipped;                ///< why nothing was done; empty: it was
-  std::map<std::string, std::size_t>
-      died_in;  ///< programs among the passed that a library took along, by library
+  /// Programs among the passed that a library took along, by library
+  std::map<std::string, std::size_t> died_in;
 
   /// @param failure what to say when it did not pass
   void count(bool good, const std::string& failure);

@@ -1,13 +1,15 @@
-/* Preloaded into a program under test, so that calls fail as on a full or broken disk, or when memory runs out.
+/* Preloaded into a program under test, so that calls fail as on a full or broken disk, or when
+ * memory runs out.
  *
- * ELROM_FAIL_AT=n: the n-th call that changes a regular file fails, and so do all later ones; counts from 1.
+ * ELROM_FAIL_AT=n: the n-th call that changes a regular file fails, and so do all later ones;
+ * counts from 1.
  * ELROM_FAIL_WITH=errno of these failures (default ENOSPC).
  * ELROM_SHORT_AT=n: the n-th write to a regular file writes half of what it should, which is no error.
- * ELROM_FAIL_ALLOCATION=n: the n-th allocation after the start of main() fails, that one alone; children that the
- * program forks do not count. ELROM_FAIL_CHILD=n: the same, counted in each child from its fork.
- * The first of these failures is told on standard error, so that a campaign knows when there are no more calls.
- * A program that dies by a signal, or whose libraries call exit(), tells where: "[died in <file> <offset> ...]", from
- * the innermost frame outwards. */
+ * ELROM_FAIL_ALLOCATION=n: the n-th allocation after the start of main() fails, that one alone; children
+ * that the program forks do not count. ELROM_FAIL_CHILD=n: the same, counted in each child from its fork.
+ * The first of these failures is told on standard error, so that a campaign knows when there are no more
+ * calls. A program that dies by a signal, or whose libraries call exit(), tells where: "[died in <file>
+ * <offset> ...]", from the innermost frame outwards. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

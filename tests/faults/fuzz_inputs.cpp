@@ -56,8 +56,8 @@ void run_inputs(const FuzzTarget& target, const std::vector<std::string>& seeds,
   }
 }
 
-/// What one program gets, per thousand inputs that are asked for: that many bundles, most of them tiny (a thousand cost no more than
-/// a large one), and texts besides.
+/// What one program gets, per thousand inputs that are asked for: that many bundles, most of them tiny (a
+/// thousand cost no more than a large one), and texts besides.
 struct Share {
   std::string target;
   std::size_t per_thousand;

@@ -83,7 +83,8 @@ TEST_F(Cases, NearMissNamesAreSuggested) {
 }
 
 TEST_F(Cases, ALetterBeyondAsciiAsAKeyIsRefused) {
-  // toml++ reaches a point there that it declares unreachable: the sanitizers see it where io/toml.hpp is not used.
+  // toml++ reaches a point there that it declares unreachable: the
+  // sanitizers see it where io/toml.hpp is not used.
   EXPECT_ERROR(InputError, "not TOML", read("c.toml", "\u045e = 1\n"));
 }
 

@@ -1,4 +1,5 @@
-// Every kind of file in every container: the same rule, in the same words. The readers of each kind are tested with their files.
+// Every kind of file in every container: the same rule, in the same
+// words. The readers of each kind are tested with their files.
 #include "elrom/io/file_kind.hpp"
 
 #include <gmock/gmock.h>

@@ -17,8 +17,8 @@ struct HardData {
   std::vector<field::FieldInfo> fields;
   std::vector<MatrixF> values;   //!< of each field, SI, (n_cases, n_cells)
   bool must_be_refused = false;  ///< holds cells that are not finite: no store may take it
-  bool corners_are_outside =
-      false;  ///< the cases fill so little of their box that its corners are far from all
+  /// The cases fill so little of their box that its corners are far from all
+  bool corners_are_outside = false;
 };
 
 /// Every hard case that is made of data.

@@ -1,5 +1,5 @@
-// Every reader that a study can reach asks for its file's kind and version by the one check (elrom/io/file_kind.hpp).
-// Those of reports, predictions and checkpoints are tested beside theirs.
+// Every reader that a study can reach asks for its file's kind and version by the one check
+// (elrom/io/file_kind.hpp). Those of reports, predictions and checkpoints are tested beside theirs.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>

@@ -1,7 +1,6 @@
 // make-sample-bundle FOLDER [full [BUILDS [UNITS [half]]]]: FOLDER/model.elrom with random weights,
 // FOLDER/cases.csv. "full": nine fields, 26 inputs, 66 planes of 840 columns, four submodels a field, three
-// hidden layers.
-// FOLDER/furnace.elrom is the small one with inputs and a furnace that physics audits know.
+// hidden layers. FOLDER/furnace.elrom is the small one with inputs and a furnace that physics audits know.
 #include <cstdlib>
 #include <fstream>
 #include <string_view>

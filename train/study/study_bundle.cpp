@@ -10,8 +10,8 @@
 namespace elrom::study {
 namespace {
 
-// What the bundle is made of; of its stages, by their inputs. No time of day, so that the same study gives the
-// same bytes.
+// What the bundle is made of; of its stages, by their inputs. No
+// time of day, so that the same study gives the same bytes.
 std::string content_digest(const StudyBundle& bundle, const std::map<std::string, FieldStage>& stages) {
   std::map<std::string, std::string> keys;
   for (const auto& [field, stage] : stages) keys[field] = stage.file.text("stage_digest");

@@ -25,8 +25,8 @@ struct Place {
 struct Pass {
   std::int64_t n_rows = 0;
   ::torch::Tensor x, target, weight;  //!< (n_rows, n_in), (n_rows, n_out), (n_rows, n_out) or undefined
-  std::vector<::torch::Tensor>
-      before;  //!< of each hidden layer before the activation: silu needs it, (n_rows, width)
+  //! Of each hidden layer before the activation: silu needs it, (n_rows, width)
+  std::vector<::torch::Tensor> before;
   std::vector<::torch::Tensor> active;   //!< after it
   std::vector<::torch::Tensor> dropped;  //!< after dropout (the same tensor without dropout)
   std::vector<::torch::Tensor> kept;     //!< dropout's factors, 0 or 1 / (1 - p); empty without dropout

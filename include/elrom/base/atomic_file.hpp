@@ -6,8 +6,8 @@
 
 namespace elrom::base {
 
-/// What survives a power cut right after commit(): `all`, the new file; `content`, the old file or the new one, whole; `none`,
-/// nothing is waited for.
+/// What survives a power cut right after commit(): `all`, the new file; `content`, the old file or the new
+/// one, whole; `none`, nothing is waited for.
 enum class Sync { none, content, all };
 
 /// Owns the temporary path until commit(); without commit the temporary is removed and the target is
@@ -22,7 +22,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
-  /// Has the system send what was written so far to the disk, and waits for nothing: commit() then waits less.
+  /// Has the system send what was written so far to the disk,
+  /// and waits for nothing: commit() then waits less.
   void begin_sync() const;
   /// The writer has closed the temporary; makes it the target. @throws SystemError
   void commit();

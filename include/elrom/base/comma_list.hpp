@@ -1,7 +1,7 @@
 #pragma once
-// Options of the programs that hold several values. Each takes exactly one word of the command line, written behind the
-// option or after an equals sign, so that the word after it is the program's next argument. Left alone, CLI11 would take
-// all words up to the next option, files included.
+// Options of the programs that hold several values. Each takes exactly one word of the command line, written
+// behind the option or after an equals sign, so that the word after it is the program's next argument. Left
+// alone, CLI11 would take all words up to the next option, files included.
 //
 // Templates, so that a header of ours does not ask CLI11 of those who use the library.
 

@@ -1,5 +1,6 @@
 #pragma once
-// SHA-256 (FIPS 180-4) by OpenSSL's libcrypto and, of several texts at once, by the processor's own instructions; lower-case hexadecimal text.
+// SHA-256 (FIPS 180-4) by OpenSSL's libcrypto and, of several texts at once, by the processor's own
+// instructions; lower-case hexadecimal text.
 
 #include <cstddef>
 #include <filesystem>
@@ -34,7 +35,8 @@ class Sha256 {
 };
 
 [[nodiscard]] std::string sha256(std::span<const std::byte> bytes);
-/// Digests of several texts in about half the time of one after the other, where the processor has SHA instructions.
+/// Digests of several texts in about half the time of one after
+/// the other, where the processor has SHA instructions.
 [[nodiscard]] std::vector<std::string> sha256_of_each(std::span<const std::span<const std::byte>> texts);
 /// @throws InputError when the file cannot be read
 [[nodiscard]] std::string sha256_file(const std::filesystem::path& path);

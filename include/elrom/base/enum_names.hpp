@@ -1,5 +1,6 @@
 #pragma once
-// The names of an enumeration, as files, settings and command lines spell them: one table serves both directions.
+// The names of an enumeration, as files, settings and command
+// lines spell them: one table serves both directions.
 //
 //   constexpr base::EnumNames<Colour, 2> colours{"colour", {{Colour::red, "red"}, {Colour::blue, "blue"}}};
 //   colours.name(Colour::red);    // "red"

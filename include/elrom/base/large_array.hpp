@@ -1,6 +1,6 @@
 #pragma once
-// Memory for megabytes that are written once: not set to zero first, and in huge pages where the system gives them. A
-// page fault costs some microseconds, and a case's nine fields alone are five hundred ordinary pages.
+// Memory for megabytes that are written once: not set to zero first, and in huge pages where the system gives
+// them. A page fault costs some microseconds, and a case's nine fields alone are five hundred ordinary pages.
 
 #include <sys/mman.h>
 

@@ -98,9 +98,9 @@ void for_each_member(T& value, const Visit& visit) {
   }
 }
 
-/// Adds every member of a value, however deep: numbers, enums, texts, pairs, optionals, lists, maps, matrices, and
-/// aggregates of those. What has a key() is added by it, also behind a pointer. A type that is none of these does not
-/// compile.
+/// Adds every member of a value, however deep: numbers, enums, texts, pairs, optionals,
+/// lists, maps, matrices, and aggregates of those. What has a key() is added by it, also
+/// behind a pointer. A type that is none of these does not compile.
 template <class T>
 void add_members(Sha256& digest, const T& value) {
   if constexpr (std::is_arithmetic_v<T>) {

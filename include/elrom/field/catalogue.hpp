@@ -32,7 +32,8 @@ inline constexpr double packing_limit = 0.65;
 /// Information on a field by name; an unknown name gives a scalar without bounds in `unit`.
 [[nodiscard]] FieldInfo field_info(std::string_view name, std::string_view unit = "1");
 
-/// What a message says of a name that is none of `known`: the nearest one. @param where whose names they are, or whose fields
+/// What a message says of a name that is none of `known`: the nearest
+/// one. @param where whose names they are, or whose fields
 [[nodiscard]] Problem unknown_field(std::span<const FieldInfo> known, std::string_view name,
                                     const std::string& where = {});
 

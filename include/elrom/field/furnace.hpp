@@ -1,7 +1,8 @@
 #pragma once
-// A furnace as far as its cases do not tell it: where gas enters and leaves, how its mirror images go, how
-// dense its solids are and how they pack, and which of its cases are kept for judging. A TOML file beside the
-// mesh says so (data/FORMATS.md, furnace description); import reads it, and stores and bundles carry its text.
+// A furnace as far as its cases do not tell it: where gas enters and leaves, how its
+// mirror images go, how dense its solids are and how they pack, and which of its cases
+// are kept for judging. A TOML file beside the mesh says so (data/FORMATS.md, furnace
+// description); import reads it, and stores and bundles carry its text.
 //
 // Thread rule: plain data.
 

@@ -1,6 +1,7 @@
 #pragma once
-// Which planes of a mesh: all of them, or those of a list. What a command line, a prediction, a bundle's reader and a
-// model's reader are told; Query and Predictor::planes() have the numbers that came of it for their mesh.
+// Which planes of a mesh: all of them, or those of a list. What a command line,
+// a prediction, a bundle's reader and a model's reader are told; Query and
+// Predictor::planes() have the numbers that came of it for their mesh.
 
 #include <cstddef>
 #include <cstdint>

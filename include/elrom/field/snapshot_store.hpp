@@ -80,8 +80,8 @@ class SnapshotWriter {
  public:
   /// New store at `path` (nothing there yet), or, with the same mesh, schema and fields, an addition to the
   /// one there. @param furnace takes an earlier one's place; nothing: what is there stays
-  /// @throws InputError "store of another mesh" / schema / field list, with both digests or the first
-  /// difference
+  /// @throws InputError "store of another mesh" / schema /
+  /// field list, with both digests or the first difference
   SnapshotWriter(const std::filesystem::path& path, const Mesh& mesh, const InputSchema& schema,
                  const std::vector<FieldInfo>& fields, const std::optional<Furnace>& furnace = std::nullopt);
   ~SnapshotWriter();

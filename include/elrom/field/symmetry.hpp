@@ -18,8 +18,8 @@ namespace elrom::field {
 struct MirrorDeclaration {
   std::string name = "mirror";  ///< "left-right"
   char axis = 'y';              ///< the coordinate that changes its sense: 'x' or 'y'
-  std::vector<std::pair<std::string, std::string>>
-      swap;                             ///< {"*_left", "*_right"}; the same number of '*' in both
+  /// {"*_left", "*_right"}; the same number of '*' in both
+  std::vector<std::pair<std::string, std::string>> swap;
   std::vector<std::string> complement;  ///< inputs q that become 1 - q
 };
 

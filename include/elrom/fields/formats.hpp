@@ -1,6 +1,6 @@
 #pragma once
-// What a prediction can be written as. One table (formats.cpp) says everything that differs from format to format;
-// command line, help, file endings and the Python package go by it.
+// What a prediction can be written as. One table (formats.cpp) says everything that differs from format to
+// format; command line, help, file endings and the Python package go by it.
 //
 // Thread rule: constants.
 

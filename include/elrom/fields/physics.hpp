@@ -26,8 +26,8 @@ struct PhysicsResult {
 /// Thread rule: const use from any number of threads.
 class Physics {
  public:
-  /// @throws UsageError when cells, fields, inputs or the furnace are missing that the audit or the repair
-  /// need
+  /// @throws UsageError when cells, fields, inputs or the
+  /// furnace are missing that the audit or the repair need
   Physics(const Arguments& arguments, const model::BundleReader& bundle, const model::Cells& cells);
 
   /// @param values all cells of the chosen fields; changed with --conserve. @throws NumericalError (the case

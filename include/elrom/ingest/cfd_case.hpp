@@ -25,10 +25,11 @@ struct CfdCase {
 /// EL3D export, one HDF5 file a case (data/FORMATS.md, "EL3D export").
 /// @throws InputError naming file and dataset: missing field, wrong unit, wrong shape, non-finite cell
 [[nodiscard]] CfdCase read_el3d(const std::filesystem::path& path);
-/// Fluent ASCII solution data (comma or space separated, optionally gzip); the case's name is the file's stem and its
-/// boundary conditions come from a cases file.
+/// Fluent ASCII solution data (comma or space separated, optionally gzip); the case's name is the file's stem
+/// and its boundary conditions come from a cases file.
 [[nodiscard]] CfdCase read_fluent_ascii(const std::filesystem::path& path);
-/// OpenFOAM case directory of an MPPICFoam run: averages instants of gas and parcels (equations in the source file).
+/// OpenFOAM case directory of an MPPICFoam run: averages instants
+/// of gas and parcels (equations in the source file).
 [[nodiscard]] CfdCase read_openfoam(const std::filesystem::path& directory);
 
 /// By what is there: a directory with constant/polyMesh, an HDF5 file, or text.

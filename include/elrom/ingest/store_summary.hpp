@@ -17,8 +17,8 @@ namespace elrom::ingest {
 [[nodiscard]] nlohmann::ordered_json describe_store(const field::SnapshotStore& store);
 [[nodiscard]] nlohmann::ordered_json describe_mesh(const field::Mesh& mesh);
 [[nodiscard]] nlohmann::ordered_json describe_case(const CfdCase& one);
-/// Keys: kind, method, mesh, furnace (null: not described), inputs, fields [{name, unit, model}], cases (those
-/// it was trained on), provenance, accuracy, digest.
+/// Keys: kind, method, mesh, furnace (null: not described), inputs, fields [{name, unit, model}], cases
+/// (those it was trained on), provenance, accuracy, digest.
 [[nodiscard]] nlohmann::ordered_json describe_bundle(const model::BundleReader& bundle);
 
 /// Keys: kind, case, load, validity, validity_reason, nearest, method, builds, interval_level (null: not

@@ -1,8 +1,8 @@
 #pragma once
-// What our files say of themselves: `kind`, `format` (a version pair) and `program`, in HDF5 attributes, texts of tensor files,
-// keys of JSON documents or rows of SQLite's table `about` (data/FORMATS.md). Every kind that ELROM writes is in the table
-// below, and every reader asks check_kind: it takes its own major version with any minor one, and refuses all else in the
-// same words.
+// What our files say of themselves: `kind`, `format` (a version pair) and `program`, in HDF5 attributes,
+// texts of tensor files, keys of JSON documents or rows of SQLite's table `about` (data/FORMATS.md). Every
+// kind that ELROM writes is in the table below, and every reader asks check_kind: it takes its own major
+// version with any minor one, and refuses all else in the same words.
 //
 // Thread rule: pure functions.
 
@@ -51,8 +51,8 @@ struct FoundKind {
 };
 
 /// @return the file's version
-/// @throws InputError naming the file, what was found and what was expected: for another kind or none, for a version that is
-/// no pair of whole numbers, for a major version other than ours
+/// @throws InputError naming the file, what was found and what was expected: for another kind or none, for a
+/// version that is no pair of whole numbers, for a major version other than ours
 FormatVersion check_kind(const FoundKind& found, const FileKind& expected, const std::string& where);
 
 /// The same for a JSON document (nlohmann::json or its ordered form, which the caller includes).

@@ -12,7 +12,7 @@
 //     static constexpr int version = 1;  // the next one when other code gives another result
 //     const RecordSource* records;       // has a key() of its own (base/members.hpp)
 //     ScreenSettings settings;
-//     [[nodiscard]] TensorFile compute(const StageContext&) const;  // threads, log: nothing a result depends on
+//     [[nodiscard]] TensorFile compute(const StageContext&) const;  // no result depends on it
 //   };
 
 #include <chrono>

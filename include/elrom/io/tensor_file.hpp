@@ -80,8 +80,8 @@ class TensorFile {
 
   [[nodiscard]] bool has(std::string_view name) const { return tensors_.contains(std::string(name)); }
   [[nodiscard]] const std::map<std::string, Tensor>& tensors() const { return tensors_; }
-  /// @throws InputError naming file and tensor when it is not there (with the nearest name), or, of a file opened
-  /// with Verify::on_use, when its bytes do not match their digest; tensors() compares nothing
+  /// @throws InputError naming file and tensor when it is not there (with the nearest name), or, of a file
+  /// opened with Verify::on_use, when its bytes do not match their digest; tensors() compares nothing
   [[nodiscard]] const Tensor& tensor(std::string_view name) const;
   /// Several at once: their digests take half the time.
   [[nodiscard]] std::vector<Tensor> tensors(std::span<const std::string> names) const;

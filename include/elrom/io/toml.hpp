@@ -1,7 +1,7 @@
 #pragma once
-// toml++, with one of its faults mended: its tables of letters declare a point unreachable that a letter beyond
-// ASCII in a key's place does reach (is_non_ascii_horizontal_whitespace), and then anything may happen. The answer
-// there is no. Whoever reads TOML includes this header.
+// toml++, with one of its faults mended: its tables of letters declare a point unreachable that a letter
+// beyond ASCII in a key's place does reach (is_non_ascii_horizontal_whitespace), and then anything may
+// happen. The answer there is no. Whoever reads TOML includes this header.
 
 // Its parts were renamed with release 3.4.
 #if __has_include(<toml++/impl/preprocessor.hpp>)

@@ -1,6 +1,6 @@
 #pragma once
-// Group /VTKHDF of an HDF5 file: an unstructured grid of hexahedra with one value a cell, as ParaView 5.11 and later open
-// it (VTKHDF 1.0).
+// Group /VTKHDF of an HDF5 file: an unstructured grid of hexahedra with one
+// value a cell, as ParaView 5.11 and later open it (VTKHDF 1.0).
 //
 // Non-goals: other cells, points' values, time steps, reading. Thread rule: one thread at a time per file.
 
@@ -37,8 +37,8 @@ struct PackedVtkHexahedra {
 [[nodiscard]] Hdf5Group write_vtkhdf(const Hdf5Group& file, const VtkHexahedra& grid);
 [[nodiscard]] Hdf5Group write_vtkhdf(const Hdf5Group& file, const PackedVtkHexahedra& grid);
 
-/// One value a cell in one row, without a second copy: a link to the dataset at the absolute path `target` where it has
-/// one dimension, a view of it where it has several.
+/// One value a cell in one row, without a second copy: a link to the dataset at the absolute path `target`
+/// where it has one dimension, a view of it where it has several.
 void show_cell_data(const Hdf5Group& cell_data, const Hdf5Dataset& values, const std::string& target,
                     const std::string& name);
 

@@ -44,8 +44,8 @@ class RunningMoments {
 [[nodiscard]] double sum_of_squares(const MatrixF& values);
 /// sum (a - b)^2 in double; a and b of one size.
 [[nodiscard]] double squared_distance(std::span<const float> a, std::span<const float> b);
-/// The NRMSE of every report and comparison: sqrt(sum (p - y)^2 / sum (m - y)^2), y the truth, p the prediction, m the mean of
-/// the training cases; 0 is perfect, 1 is no better than the mean.
+/// The NRMSE of every report and comparison: sqrt(sum (p - y)^2 / sum (m - y)^2), y the truth, p the
+/// prediction, m the mean of the training cases; 0 is perfect, 1 is no better than the mean.
 /// @param undefined for a truth that does not depart from the mean
 [[nodiscard]] double nrmse(double squared_error, double squared_departure,
                            double undefined = std::numeric_limits<double>::quiet_NaN());

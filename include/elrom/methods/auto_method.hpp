@@ -26,8 +26,8 @@ struct AutoOptions {
 struct CandidateScore {
   std::string name;
   double nrmse = 0;  ///< cross-validated, against the mean of the cases; NaN: failed
-  std::vector<double> weights =
-      {};  ///< in the final model: (n_columns), or one for all; empty: no part of it
+  /// In the final model: (n_columns), or one for all; empty: no part of it
+  std::vector<double> weights = {};
   std::string failure = {};
 
   [[nodiscard]] double mean_weight() const;

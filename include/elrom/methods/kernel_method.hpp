@@ -15,8 +15,8 @@
 namespace elrom::methods {
 
 struct KernelOptions {
-  double dropped =
-      1e-3;  ///< energy that truncating the modes of a part may drop, as a share of the error's energy
+  /// Energy that truncating the modes of a part may drop, as a share of the error's energy
+  double dropped = 1e-3;
   std::size_t most_modes = 40;  ///< for the symmetric part; an antisymmetric part has at most a quarter of it
   int passes = 2;  ///< searches; from the second on, errors are weighted by what the first one trusts
   bool antisymmetric = true;  ///< learn the antisymmetric parts too, instead of predicting none

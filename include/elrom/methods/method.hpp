@@ -35,7 +35,8 @@ class Method {
  public:
   virtual ~Method() = default;
   [[nodiscard]] virtual std::string name() const = 0;
-  /// Of everything that a result for this field depends on beside data, rows and seed: name, options, trainer.
+  /// Of everything that a result for this field depends on
+  /// beside data, rows and seed: name, options, trainer.
   [[nodiscard]] virtual std::string key(const std::string& field) const = 0;
   /// Learns from the rows `cases` of `data` alone.
   [[nodiscard]] virtual std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,

@@ -33,8 +33,8 @@ struct AuditSettings {
   double gas_constant = 287.05;        ///< dry air [J/(kg K)]
   double gravity = 9.80665;            ///< [m/s2]
   std::vector<field::Opening> inlets;  ///< empty: no gas balance
-  double outlet_low_m =
-      std::numeric_limits<double>::infinity();  ///< above it, gas leaves and no balance is drawn
+  /// Above it, gas leaves and no balance is drawn
+  double outlet_low_m = std::numeric_limits<double>::infinity();
 };
 
 /// With the openings, the outlet and the solids of a furnace; nothing: without a gas balance.

@@ -18,8 +18,8 @@ namespace elrom::model {
 struct Submodel {
   std::string name;                   ///< "0.1 to 0.2": the band
   std::vector<std::int32_t> columns;  //!< column of each network output, ascending, (n_outputs)
-  std::vector<std::uint8_t>
-      mask;  //!< 1 where it answers for a cell, (n_planes, n_outputs); empty: in all planes
+  //! 1 where it answers for a cell, (n_planes, n_outputs); empty: in all planes
+  std::vector<std::uint8_t> mask;
   std::vector<Network> builds;  ///< inputs: scaled boundary conditions, then the plane's encoding
   std::vector<double> scores;   //!< validation MSE of each build, standardised units, (n_builds)
 

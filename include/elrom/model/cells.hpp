@@ -1,5 +1,6 @@
 #pragma once
-// Cells chosen by planes and box, their geometry in single precision, and averages over planes. Made once for a run.
+// Cells chosen by planes and box, their geometry in single
+// precision, and averages over planes. Made once for a run.
 
 #include <array>
 #include <cstdint>
@@ -21,8 +22,8 @@ struct Box {
   std::array<double, 3> high{infinity, infinity, infinity};
 };
 
-/// At least one cell, in the order of the mesh. Every function holds for every choice: whole planes only keep no list of
-/// cells, and their numbers are computed.
+/// At least one cell, in the order of the mesh. Every function holds for every choice: whole planes only keep
+/// no list of cells, and their numbers are computed.
 class Cells {
  public:
   /// All cells of a mesh, which is not needed for that.

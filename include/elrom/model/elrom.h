@@ -1,10 +1,10 @@
-/* ELROM from C, Fortran, Python (ctypes) or a Fluent UDF: a small interface over model::Predictor (library elrom-c).
+/* ELROM from C, Fortran, Python (ctypes) or a Fluent UDF: a small interface over model::Predictor,
+ * the library elrom-c.
  *
- * Every function that can fail returns a status: 0 done, 2 wrong use, 3 wrong file or input, 5 arithmetic, 1 anything
- * else (the exit statuses of the programs); elrom_last_error() says why in one line.
+ * Every function that can fail returns a status: 0 done, 2 wrong use, 3 wrong file or input, 5 arithmetic,
+ * 1 anything else (the exit statuses of the programs); elrom_last_error() says why in one line.
  * Values are in SI and 32-bit; order: fields, planes, columns, with columns fastest.
- * Threads: any number of threads may call any function on one predictor, except elrom_close().
- */
+ * Threads: any number of threads may call any function on one predictor, except elrom_close(). */
 #ifndef ELROM_H
 #define ELROM_H
 
@@ -46,15 +46,16 @@ ELROM_API int elrom_cell_centres(const elrom_predictor* predictor, double* xyz);
 /* Boundary conditions of a case in a cases file (CSV, JSON, TOML): inputs has n_inputs values. */
 ELROM_API int elrom_read_case(const elrom_predictor* predictor, const char* cases, const char* name,
                               double* inputs);
-/* All fields of one case: inputs has n_inputs values, values has n_fields * n_planes * n_columns. n_threads >= 1. */
+/* All fields of one case: n_inputs inputs, n_fields * n_planes * n_columns values; n_threads >= 1. */
 ELROM_API int elrom_predict(const elrom_predictor* predictor, const double* inputs, float* values,
                             int n_threads);
-/* Predicts one case and writes its file as elrom-predict does (HDF5 for scripts and ParaView; data/FORMATS.md, kind
- * "elrom-prediction"). name: the case's in the file; load: fraction of full load, NaN: not known. The file appears whole
- * or not at all; one there is replaced. */
+/* Predicts one case and writes its file as elrom-predict does (HDF5 for scripts and ParaView;
+ * data/FORMATS.md, kind "elrom-prediction"). name: the case's in the file; load: fraction of full load,
+ * NaN: not known. The file appears whole or not at all; one there is replaced. */
 ELROM_API int elrom_write_prediction(const elrom_predictor* predictor, const double* inputs, const char* name,
                                      double load, const char* path, int n_threads);
-/* verdict: 0 inside, 1 edge, 2 outside of what was trained; the reason is cut to reason_size and ends with '\0'. */
+/* verdict: 0 inside, 1 edge, 2 outside of what was trained; the reason, cut to
+ * reason_size, ends with '\0'. */
 ELROM_API int elrom_validity(const elrom_predictor* predictor, const double* inputs, int* verdict,
                              char* reason, size_t reason_size);
 

@@ -1,6 +1,7 @@
 #pragma once
-// What of the furnace a prediction's result covers: all of it, some planes, a region; cells or plane averages. It says
-// what to predict (planes), makes the result out of what was predicted, and says where the result's values lie.
+// What of the furnace a prediction's result covers: all of it, some planes, a
+// region; cells or plane averages. It says what to predict (planes), makes the
+// result out of what was predicted, and says where the result's values lie.
 //
 // Thread rule: const use from any number of threads.
 
@@ -31,8 +32,8 @@ struct Excerpt {
 
 class Extent {
  public:
-  /// Reads of the bundle what the excerpt needs: for all cells the packed mesh, where the bundle has it (from format 1.1
-  /// on), and else the mesh. @throws UsageError when it has no cell, InputError for a broken mesh
+  /// Reads of the bundle what the excerpt needs: for all cells the packed mesh, where the bundle has it (from
+  /// format 1.1 on), and else the mesh. @throws UsageError when it has no cell, InputError for a broken mesh
   explicit Extent(const BundleReader& bundle, const Excerpt& excerpt = {}, int n_threads = 1);
   /// Of a mesh at hand. @param mesh of exactly `excerpt.planes` @param n_planes of the whole mesh
   Extent(const field::Mesh& mesh, std::size_t n_planes, const Excerpt& excerpt = {});

@@ -1,5 +1,6 @@
 #pragma once
-// Every predictor of one field, network or peer, is a FieldModel: boundary conditions in, planes of cells out.
+// Every predictor of one field, network or peer, is a
+// FieldModel: boundary conditions in, planes of cells out.
 //
 // Non-goals: training (train/study), several fields at once (Predictor), units at the edges.
 
@@ -16,8 +17,9 @@
 
 namespace elrom::model {
 
-/// Scratch memory of one prediction thread: grows on first use and is reused afterwards, so that a predictor allocates
-/// nothing after its first call. Used like a stack; spans stay valid until the Frame that took them ends.
+/// Scratch memory of one prediction thread: grows on first use and is reused
+/// afterwards, so that a predictor allocates nothing after its first call. Used
+/// like a stack; spans stay valid until the Frame that took them ends.
 class Workspace {
  public:
   class Frame {
@@ -68,16 +70,18 @@ class FieldModel {
 
   /// Field values in SI. Results for a plane do not depend on which other planes are asked for, to the bit.
   /// @param values (planes.size() * n_columns), plane by plane
-  /// @param spread standard deviation the model itself knows of (ensemble, kriging variance), same shape; may be empty
+  /// @param spread standard deviation the model itself knows of
+  /// (ensemble, kriging variance), same shape; may be empty
   virtual void predict(const Query& query, std::span<float> values, std::span<float> spread,
                        Workspace& workspace) const = 0;
 
-  /// Puts tensors under "<prefix>/..." and the description as JSON text under `prefix` (its "kind" names the reader).
+  /// Puts tensors under "<prefix>/..." and the description as
+  /// JSON text under `prefix` (its "kind" names the reader).
   virtual void save(io::TensorFile& file, const std::string& prefix) const = 0;
 };
 
-/// What of a model is to be loaded: predictions of these planes, by these builds. The rest of the file stays unread where the
-/// model's kind allows it.
+/// What of a model is to be loaded: predictions of these planes, by these builds. The rest of the file stays
+/// unread where the model's kind allows it.
 struct Wanted {
   field::Planes planes;
   bool best_build_only = false;

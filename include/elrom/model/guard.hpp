@@ -25,8 +25,8 @@ struct Assessment {
   std::string reason;                     ///< one sentence, with the user's units
   std::vector<std::string> out_of_range;  ///< "primary_air 250 kg/s (trained 150 to 212)"
   double distance = 0;                    ///< joint distance to the training cases
-  double p_value =
-      1;  ///< share of training cases at least as far from the others (leave-one-out), (k + 1) / (n + 1)
+  /// Share of training cases at least as far from the others (leave-one-out), (k + 1) / (n + 1)
+  double p_value = 1;
   std::vector<Neighbour> nearest;  ///< three, nearest first
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Prediction files: one case as HDF5, our own group for scripts and a /VTKHDF view of the same cells for ParaView 5.11
-// and later. Layout in data/FORMATS.md (kind "elrom-prediction").
+// Prediction files: one case as HDF5, our own group for scripts and a /VTKHDF view of the same cells for
+// ParaView 5.11 and later. Layout in data/FORMATS.md (kind "elrom-prediction").
 //
 // Thread rule: one thread at a time for all files, as the HDF5 library wants it.
 

@@ -1,7 +1,7 @@
 #pragma once
-// What the search looks for, and the one list of it. Stage files, the search space, the trial store, checkpoints
-// and messages between processes go through the list: a new hyperparameter is a member, its name, and the values
-// that it is searched over (search_space.cpp).
+// What the search looks for, and the one list of it. Stage files, the search space, the trial store,
+// checkpoints and messages between processes go through the list: a new hyperparameter is a member, its name,
+// and the values that it is searched over (search_space.cpp).
 //
 // Thread rule: pure functions.
 

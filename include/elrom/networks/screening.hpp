@@ -36,8 +36,8 @@ struct ScreeningData {
 };
 
 struct ScreeningResult {
-  MatrixD
-      error;  //!< mean over builds of the mean squared error on a plane's test records, (n_planes, n_columns)
+  //! Mean over builds of the mean squared error on a plane's test records, (n_planes, n_columns)
+  MatrixD error;
   MatrixD build_error;  //!< mean squared error on all test records, (n_builds, n_columns); 1 row when fast
   double mean_epochs = 0;
 
@@ -47,8 +47,8 @@ struct ScreeningResult {
 
 /// What a crew gives back for one of its columns.
 struct ColumnOutcome {
-  std::vector<double>
-      plane_error;   //!< sum of squared errors over the judging records of each plane, (n_planes)
+  //! Sum of squared errors over the judging records of each plane, (n_planes)
+  std::vector<double> plane_error;
   double error = 0;  //!< mean squared error over all judging records
   int epochs = 0;
 };

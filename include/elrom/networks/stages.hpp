@@ -1,6 +1,6 @@
 #pragma once
-// The kept stages of the networks of a field (io/stage_cache.hpp): each is given the settings that it reads and
-// no others.
+// The kept stages of the networks of a field (io/stage_cache.hpp):
+// each is given the settings that it reads and no others.
 
 #include "elrom/base/log.hpp"
 #include "elrom/io/stage_cache.hpp"
@@ -35,8 +35,8 @@ struct FieldSettings {
   FitSettings fit;
   bool average = false;
 };
-/// What a stage would not read (the closed-form screen's settings beside networks, ranges that are not searched)
-/// is at its default.
+/// What a stage would not read (the closed-form screen's settings beside
+/// networks, ranges that are not searched) is at its default.
 [[nodiscard]] FieldSettings settings_of_field(const Settings& settings, const std::string& field);
 
 /// How well a default network learns each column. Read the file with screening_of().

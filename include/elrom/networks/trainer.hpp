@@ -44,8 +44,8 @@ struct TrainingResult {
   bool pruned = false;
   bool diverged = false;  ///< a loss that was not finite: the trial loses, never a NaN winner (scores are the
                           ///< largest finite number)
-  bool backed_off =
-      false;  ///< after a first such loss it was begun again at a tenth of the rate: tell the user
+  /// After a first such loss it was begun again at a tenth of the rate: tell the user
+  bool backed_off = false;
 };
 
 /// Warns when a training diverged: it is lost, or was begun again at a tenth of its rate.

@@ -83,11 +83,11 @@ struct FieldAccuracy {
   std::vector<MethodField> methods;      //!< in the order of AccuracyReport::methods
   std::vector<SubmodelScore> submodels;  //!< of the study's own networks, wherever they are; empty: none
   std::vector<double> noise;  ///< energy of the truth's noise in each scored case; empty: not known
-  std::optional<double>
-      noise_nrmse;     ///< its square root over the departure of the scored cases: the noise floor
+  /// Its square root over the departure of the scored cases: the noise floor
+  std::optional<double> noise_nrmse;
   ErrorBudget budget;  ///< of the study's model
-  std::vector<double>
-      compression_nrmse;  //!< of the best fit with r modes of the training cases, (n_modes + 1)
+  //! Of the best fit with r modes of the training cases, (n_modes + 1)
+  std::vector<double> compression_nrmse;
   std::vector<std::vector<double>> coverage;  //!< measured share, (levels, n_cases); empty: no promise made
   [[nodiscard]] double noise_energy() const;  ///< of all scored cases together; 0 when not known
   [[nodiscard]] double nrmse(std::size_t method) const;

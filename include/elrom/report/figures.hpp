@@ -16,10 +16,10 @@ namespace elrom::report {
 struct Cut {
   std::string title;       ///< "y = 13.80 m"
   std::string horizontal;  ///< "x [m]"
-  std::vector<std::array<std::size_t, 2>>
-      cells;  //!< a cut between two rows of cells shows their mean; else both equal
-  std::vector<std::array<float, 8>>
-      corners;  //!< [m], counter-clockwise from lower left, same length as cells
+  //! A cut between two rows of cells shows their mean; else both equal
+  std::vector<std::array<std::size_t, 2>> cells;
+  //! [m], counter-clockwise from lower left, same length as cells
+  std::vector<std::array<float, 8>> corners;
 };
 
 /// Middle cuts along x and along y; a mesh of one row has one cut.
@@ -52,8 +52,8 @@ struct ParityMap {
 
 /// One field's drawings.
 struct FieldFigures {
-  std::vector<std::vector<std::vector<float>>>
-      cuts;  //!< [case][series]: truth, then methods; empty: not kept
+  //! [case][series]: truth, then methods; empty: not kept
+  std::vector<std::vector<std::vector<float>>> cuts;
   std::vector<std::vector<std::vector<double>>> profiles;  //!< [case][series][plane]
   std::vector<std::vector<double>> half_width;  //!< [case][plane]: mean 90 % half-width; empty: none
   std::vector<Histogram> errors;                //!< by method, over all scored cases

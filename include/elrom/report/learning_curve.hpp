@@ -21,8 +21,8 @@ namespace elrom::report {
 struct LearningCurveOptions {
   std::filesystem::path study;
   std::optional<std::filesystem::path> store;
-  std::string
-      method;  ///< a peer's name; empty: the one that answers for most fields of the study, or the best peer
+  /// A peer's name; empty: the one that answers for most fields of the study, or the best peer
+  std::string method;
   std::vector<std::string> fields;  ///< empty: all of the study
   int n_points = 5;   ///< subset sizes, evenly spaced in the logarithm, from an eighth of the cases to all
   int n_repeats = 3;  ///< nested draws

@@ -1,10 +1,11 @@
 #pragma once
-// SQLite behind a small owning interface: one file, statements with bound values, a file's kind and version in a table `about`
-// (data/FORMATS.md). A reader in another process sees every committed row, and a killed writer loses only what was not
-// committed (write-ahead log).
+// SQLite behind a small owning interface: one file, statements with bound values, a file's kind and version
+// in a table `about` (data/FORMATS.md). A reader in another process sees every committed row, and a killed
+// writer loses only what was not committed (write-ahead log).
 //
-// Every failure of SQLite becomes an InputError that names the file. Columns and parameters count from 1 where SQLite's do
-// (bind) and from 0 where they do (columns). Thread rule: one thread at a time for a database and its statements.
+// Every failure of SQLite becomes an InputError that names the file. Columns and
+// parameters count from 1 where SQLite's do (bind) and from 0 where they do
+// (columns). Thread rule: one thread at a time for a database and its statements.
 
 #include <cstdint>
 #include <filesystem>
@@ -38,7 +39,8 @@ class Statement {
   Statement& bind(int i, double value);
   /// Takes a step. @return whether there is a row
   bool next();
-  /// Of the present row; `i` from 0. A value of another type is converted as SQLite does; NULL gives 0 and "".
+  /// Of the present row; `i` from 0. A value of another type is
+  /// converted as SQLite does; NULL gives 0 and "".
   [[nodiscard]] std::int64_t integer(int i) const;
   [[nodiscard]] double real(int i) const;
   [[nodiscard]] std::string text(int i) const;
@@ -56,8 +58,8 @@ class Database {
  public:
   /// Opens the file, or makes one of this kind where there is none or an empty one.
   /// @param schema statements that make the tables (CREATE TABLE IF NOT EXISTS ...), separated by ';'
-  /// @throws InputError when it is no SQLite file, of another kind, of another major version, or cannot be opened; such a
-  /// file is left as it is
+  /// @throws InputError when it is no SQLite file, of another kind, of another
+  /// major version, or cannot be opened; such a file is left as it is
   Database(const std::filesystem::path& path, const io::FileKind& kind, const std::string& schema);
   ~Database();
   Database(const Database&) = delete;

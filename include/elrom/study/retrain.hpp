@@ -1,9 +1,10 @@
 #pragma once
-// Retraining: new cases of the store are taken into a trained study, with what earlier runs kept and the networks' plans of the
-// earlier cases. The new bundle replaces model.elrom only where its error is not above the earlier one's.
+// Retraining: new cases of the store are taken into a trained study, with what
+// earlier runs kept and the networks' plans of the earlier cases. The new bundle
+// replaces model.elrom only where its error is not above the earlier one's.
 //
-// Errors are means over fields of the NRMSE (elrom/math/statistics.hpp), 1 = predicting the training mean. Times are wall
-// seconds.
+// Errors are means over fields of the NRMSE (elrom/math/statistics.hpp), 1 =
+// predicting the training mean. Times are wall seconds.
 //
 // Thread rule: one thread at a time; settings.n_threads() is used inside.
 
@@ -25,8 +26,8 @@ struct RetrainReport {
   double seconds = 0;
   std::optional<double> seconds_from_nothing;  ///< of the last run that reused no model; nothing: not known
   double error_before = 0, error_after = 0;
-  bool on_held_out_cases =
-      false;              ///< false: the store has none, and each bundle's own cross-validation judged
+  /// False: the store has none, and each bundle's own cross-validation judged
+  bool on_held_out_cases = false;
   bool promoted = false;  ///< the new bundle is model.elrom now
 };
 
@@ -37,8 +38,8 @@ struct RetrainReport {
                                     const Toolbox& toolbox, Log& log, const std::stop_token& stop,
                                     bool compare = false);
 
-/// Error of a bundle on some rows of the store, against the mean of all others; a field that does not depart from that mean
-/// counts as 0. @throws InputError when bundle and store do not fit
+/// Error of a bundle on some rows of the store, against the mean of all others; a field that does not depart
+/// from that mean counts as 0. @throws InputError when bundle and store do not fit
 [[nodiscard]] double held_out_error(const std::filesystem::path& bundle, const field::SnapshotStore& store,
                                     const std::vector<std::size_t>& rows);
 
