@@ -29,7 +29,7 @@ constexpr double least_gain = 0.08, widest_gap = 0.05;  // what a study promises
 struct Options : benchmark::Arguments {
   std::string effort = "quick";
   Names held_out{"load_*"}, repeats{"rep*"}, settings;
-  std::size_t sets = 0;
+  int sets = 0;
   std::filesystem::path folder;
 };
 
@@ -51,9 +51,10 @@ std::vector<Trial> trials_of(const Options& options) {
         !matches_any(record.inputs.name, options.repeats))
       cases.push_back(record.inputs);
   std::ranges::stable_sort(cases, {}, &field::CaseInputs::load);
-  for (std::size_t s = 0; s < options.sets; ++s) {
+  const auto n_sets = static_cast<std::size_t>(options.sets);
+  for (std::size_t s = 0; s < n_sets; ++s) {
     Trial trial{fmt::format("set {}", s + 1), {}};
-    for (std::size_t i = s; i < cases.size(); i += options.sets) trial.held_out.push_back(cases[i].name);
+    for (std::size_t i = s; i < cases.size(); i += n_sets) trial.held_out.push_back(cases[i].name);
     trials.push_back(std::move(trial));
   }
   return trials;
@@ -227,8 +228,7 @@ int main(int argc, char** argv) {
     Options options;
     benchmark::CommandLine line(
         "Whether ELROM is at or below every simple peer, and its intervals cover what they promise, on the "
-        "held-out "
-        "cases and on other sets of cases in their place (NRMSE; 1 = no skill).");
+        "held-out cases and on other sets of cases in their place (NRMSE; 1 = no skill).");
     options.add_to(line, "snapshot store", benchmark::CommandLine::Need::required);
     line.add("--sets", options.sets, "further trials, each holding back a share of the training cases");
     line.add("--effort", options.effort, "of the studies");
