@@ -175,11 +175,6 @@ class Gp final : public PodPeer {
 
 }  // namespace
 
-const std::vector<std::string>& peer_names() {
-  static const std::vector<std::string> names{"nearest", "linear", "pod_gp", "pod_gp_per_mode", "pod_rbf"};
-  return names;
-}
-
 std::unique_ptr<Method> make_peer(std::string_view name, const PeerOptions& options) {
   const std::string own(name);
   if (own == "nearest") return std::make_unique<Nearest>(own, options);

@@ -4,20 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "elrom/field/catalogue.hpp"
+#include "elrom/methods/catalogue.hpp"
 
 namespace elrom::report {
 
 std::string method_label(const std::string& name) {
-  static const std::map<std::string, std::string> labels{
-      {"nearest", "nearest case"}, {"linear", "linear"},
-      {"pod_gp", "POD + GP"},      {"pod_gp_per_mode", "POD + GP per mode"},
-      {"pod_rbf", "POD + RBF"},    {"pod_mlp", "POD + MLP"},
-      {"networks", "networks"},    {"kernel", "kernel"}};
-  const auto found = labels.find(name);
-  return found == labels.end() ? name : found->second;
+  const auto* known = methods::find_method(name);
+  return known == nullptr ? name : known->label;
 }
 
 std::string field_label(const std::string& name) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "elrom/methods/catalogue.hpp"
 #include "names.hpp"
 #include "page_parts.hpp"
 #include "svg.hpp"
@@ -213,12 +214,9 @@ std::string profile_chart(const AccuracyReport& report, std::size_t f, std::size
 }  // namespace
 
 std::string series_class(const AccuracyReport& report, std::size_t method) {
-  static const std::map<std::string, int> fixed{{"nearest", 1}, {"linear", 2},          {"pod_rbf", 3},
-                                                {"pod_gp", 4},  {"pod_gp_per_mode", 5}, {"networks", 6},
-                                                {"pod_mlp", 7}};
   if (method == 0) return "s0";
-  const auto found = fixed.find(report.methods[method].file.name);
-  return found != fixed.end() ? fmt::format("s{}", found->second) : fmt::format("s{}", 8 + method % 2);
+  const auto* known = methods::find_method(report.methods[method].file.name);
+  return fmt::format("s{}", known != nullptr ? known->place : static_cast<int>(8 + method % 2));
 }
 
 std::string method_legend(const AccuracyReport& report, bool with_truth) {

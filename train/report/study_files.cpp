@@ -1,9 +1,10 @@
 #include "elrom/report/study_files.hpp"
 
 #include <algorithm>
-#include <array>
+#include <limits>
 
 #include "elrom/base/error.hpp"
+#include "elrom/methods/catalogue.hpp"
 #include "elrom/study/held_out.hpp"
 #include "elrom/study/settings.hpp"
 #include "elrom/study/timing.hpp"
@@ -12,12 +13,11 @@ namespace elrom::report {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::array usual_order{"nearest",         "linear",  "pod_rbf", "pod_gp",
-                                 "pod_gp_per_mode", "pod_mlp", "networks"};
 
-std::size_t rank_of(const std::string& method) {
-  return static_cast<std::size_t>(std::find(usual_order.begin(), usual_order.end(), method) -
-                                  usual_order.begin());
+// Bundles that are no method of ours come last.
+int rank_of(const std::string& method) {
+  const auto* known = methods::find_method(method);
+  return known == nullptr ? std::numeric_limits<int>::max() : known->place;
 }
 
 fs::path settings_file(const fs::path& directory) {
@@ -58,8 +58,8 @@ void read_timing(StudyFiles& study, const std::string& model_method) {
 }  // namespace
 
 bool is_simple_peer(const std::string& method) {
-  constexpr std::array simple{"nearest", "linear", "pod_gp", "pod_gp_per_mode", "pod_rbf"};
-  return std::find(simple.begin(), simple.end(), method) != simple.end();
+  const auto* known = methods::find_method(method);
+  return known != nullptr && known->peer;
 }
 
 StudyFiles open_study(const fs::path& directory, const std::optional<fs::path>& store) {

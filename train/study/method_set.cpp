@@ -11,7 +11,10 @@
 namespace elrom::study {
 namespace {
 
-bool needs_trainer(const std::string& name) { return name == "networks" || name == "pod_mlp"; }
+bool needs_trainer(const std::string& name) {
+  const auto* known = methods::find_method(name);
+  return known != nullptr && known->needs_trainer;
+}
 
 NotBuiltError no_trainer(const std::string& name) {
   return NotBuiltError({.what = "method " + name + " needs LibTorch, which this build left out",

@@ -23,6 +23,11 @@ bool are_edges(const std::vector<double>& v) {
          std::ranges::all_of(v, [](double x) { return x > 0; });
 }
 
+std::vector<std::string> with_auto(std::vector<std::string> names) {
+  names.insert(names.begin(), "auto");
+  return names;
+}
+
 io::SettingsTable<Settings> make_table() {
   io::SettingsTable<Settings> t;
   t.word(
@@ -30,8 +35,7 @@ io::SettingsTable<Settings> make_table() {
       [](auto& s) -> auto& { return s.effort; }, levels);
   t.word(
       "method", "auto picks per field by cross-validation; or one method for every field",
-      [](auto& s) -> auto& { return s.method; },
-      {"auto", "networks", "nearest", "linear", "pod_gp", "pod_gp_per_mode", "pod_rbf", "pod_mlp", "kernel"});
+      [](auto& s) -> auto& { return s.method; }, with_auto(methods::method_names()));
   t.word(
       "store", "snapshot store, relative to the study's folder", [](auto& s) -> auto& { return s.store; });
   t.whole(

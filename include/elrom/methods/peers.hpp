@@ -9,6 +9,7 @@
 
 #include "elrom/math/pod.hpp"
 #include "elrom/math/rbf.hpp"
+#include "elrom/methods/catalogue.hpp"
 #include "elrom/methods/method.hpp"
 
 namespace elrom::methods {
@@ -20,10 +21,7 @@ struct PeerOptions {
   int gp_iterations = 100;
 };
 
-/// "nearest", "linear", "pod_gp", "pod_gp_per_mode", "pod_rbf".
-[[nodiscard]] const std::vector<std::string>& peer_names();
-
-/// fit() of a peer may run on several threads at a time. @throws UsageError for an unknown name, with the
+/// @param name one of peer_names(). fit() of a peer may run on several threads at a time. @throws UsageError for an unknown name, with the
 /// nearest one
 [[nodiscard]] std::unique_ptr<Method> make_peer(std::string_view name, const PeerOptions& options = {});
 

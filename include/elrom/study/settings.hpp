@@ -9,14 +9,14 @@
 #include <string_view>
 #include <vector>
 
+#include "elrom/methods/catalogue.hpp"
 #include "elrom/networks/settings.hpp"
 
 namespace elrom::study {
 
 /// What a study without networks, or a peer beside them, is fitted with.
 struct PeerSettings {
-  std::vector<std::string> methods{"nearest", "linear", "pod_gp", "pod_gp_per_mode",
-                                   "pod_rbf"};  ///< bundles beside the model
+  std::vector<std::string> methods = elrom::methods::peer_names();  ///< bundles beside the model
   bool networks = true;  ///< networks take part in "auto" and get a bundle of their own
   int folds = 8;         ///< load-grouped folds of the cross-validation in "auto"
 };
