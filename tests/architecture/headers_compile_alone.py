@@ -45,7 +45,8 @@ def compile_alone(compiler, flags, header, digest, kept, precompiled):
 
 def main():
     compiler, root, work = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
-    flags = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", f"-I{root}", *filter(None, sys.argv[4:])]
+    flags = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", f"-I{root}"]
+    flags += [flag for flag in sys.argv[4:] if flag not in ("", "-isystem/usr/include")]  # that one breaks #include_next
     work.mkdir(parents=True, exist_ok=True)
     eigen = work / "eigen.hpp"
     eigen.write_text("#include <Eigen/Core>\n")

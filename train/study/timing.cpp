@@ -33,7 +33,8 @@ Json earlier_full_run(const std::filesystem::path& path) {
 /// A number each, or an object with "seconds".
 std::map<std::string, double> seconds_of(const Json& root, const char* part) {
   std::map<std::string, double> seconds;
-  for (const auto& [name, value] : root.value(part, Json::object()).items()) {
+  const auto entries = root.value(part, Json::object());  // outlives items(), which only refers to it
+  for (const auto& [name, value] : entries.items()) {
     if (value.is_number()) seconds[name] = value.get<double>();
     if (value.is_object()) seconds[name] = value.at("seconds").get<double>();
   }

@@ -1,6 +1,6 @@
 #pragma once
-// The methods by name. Settings, reports and refusals go by this one table; what makes them is peers.hpp and, in a
-// study, MethodSet.
+// The methods by name. Settings, reports and refusals go by this one table; what makes them is peers.hpp and,
+// in a study, MethodSet.
 //
 // Thread rule: constants.
 

@@ -21,8 +21,8 @@ struct PeerOptions {
   int gp_iterations = 100;
 };
 
-/// @param name one of peer_names(). fit() of a peer may run on several threads at a time. @throws UsageError for an unknown name, with the
-/// nearest one
+/// fit() of a peer may run on several threads at a time.
+/// @param name one of peer_names(). @throws UsageError for an unknown name, with the nearest one
 [[nodiscard]] std::unique_ptr<Method> make_peer(std::string_view name, const PeerOptions& options = {});
 
 }  // namespace elrom::methods
