@@ -155,7 +155,9 @@ class Import {
                      .unit = "cases"});
     }
     if (options_.leave_out) leave_out(options_.leave_out());
-    if (writer_ && (!taken_.empty() || furnace_)) writer_->commit();
+    // A furnace alone makes no store, but a store may be given one.
+    const bool describes_old = furnace_ && std::filesystem::exists(options_.store);
+    if (writer_ && (!taken_.empty() || describes_old)) writer_->commit();
     sum_up();
     return summary_;
   }

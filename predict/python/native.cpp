@@ -396,6 +396,8 @@ PYBIND11_MODULE(_native, module) {
       const auto type =
           types.contains(status) ? types[status].cast<py::object>() : types[py::int_(1)].cast<py::object>();
       PyErr_SetString(type.ptr(), error.what());
+    } catch (const std::system_error& error) {  // filesystem errors are among them
+      PyErr_SetString(error_types->cast<py::dict>()[py::int_(1)].cast<py::object>().ptr(), error.what());
     }
   });
 }

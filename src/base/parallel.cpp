@@ -31,6 +31,7 @@ struct Share {
   const std::function<void(int)>* run = nullptr;
   int number = 0;
   std::fenv_t arithmetic{};  ///< rounding and denormals, as the caller has set them
+  cpu_set_t allowed{};       ///< processors, as the caller may use them
 };
 
 /// Signals are for the program's own threads, which may be asleep in a call that a signal has to end. Those
@@ -119,11 +120,18 @@ class Worker {
       const Share& share = *share_;
       lock.unlock();
       std::fesetenv(&share.arithmetic);
+      move_to(share.allowed);
       (*share.run)(share.number);
       lock.lock();
       state_ = State::idle;
       changed_.notify_one();
     }
+  }
+
+  /// The workers of one caller may serve another, who is confined to other processors.
+  void move_to(const cpu_set_t& allowed) {
+    if (CPU_EQUAL(&allowed, &allowed_) || CPU_COUNT(&allowed) == 0) return;
+    if (sched_setaffinity(0, sizeof allowed, &allowed) == 0) allowed_ = allowed;
   }
 
   cpu_set_t allowed_;
@@ -194,8 +202,9 @@ class Crew {
   Crew(std::size_t n, const std::function<void(int)>& run) : shares_(n), workers_(Team::instance().lend(n)) {
     std::fenv_t arithmetic;
     std::fegetenv(&arithmetic);
+    const auto allowed = allowed_processors();
     for (std::size_t k = 0; k < workers_.size(); ++k) {
-      shares_[k] = {&run, static_cast<int>(k) + 1, arithmetic};
+      shares_[k] = {&run, static_cast<int>(k) + 1, arithmetic, allowed};
       workers_[k]->offer(shares_[k]);
     }
   }

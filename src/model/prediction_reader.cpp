@@ -6,7 +6,11 @@ namespace elrom::model {
 namespace {
 
 std::optional<double> number_of(const io::Hdf5Object& object, const std::string& name) {
-  return object.has_attribute(name) ? std::optional(object.numbers(name).at(0)) : std::nullopt;
+  if (!object.has_attribute(name)) return std::nullopt;
+  const auto values = object.numbers(name);
+  if (values.empty())
+    throw InputError({.what = "attribute " + name + " holds no value", .where = object.where()});
+  return values[0];
 }
 
 void read_identity(const io::Hdf5Group& elrom, StoredPrediction& stored) {

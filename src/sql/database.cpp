@@ -110,11 +110,14 @@ io::FoundKind Database::found_kind() const {
   return found;
 }
 
+// A file that is locked, or on a full disk, is as good as before: what makes it anew is for broken ones.
 void Database::fail() const {
+  const int code = sqlite3_errcode(database_);
+  const bool broken = code == SQLITE_CORRUPT || code == SQLITE_NOTADB;
   throw InputError({.what = "database cannot be used",
                     .where = where_,
                     .found = sqlite3_errmsg(database_),
-                    .advice = remedy_});
+                    .advice = broken ? remedy_ : std::string()});
 }
 
 }  // namespace elrom::sql

@@ -225,6 +225,15 @@ TEST_F(ImportingFurnaces, ReadsTheOneBesideTheMeshAndSaysSo) {
   EXPECT_THAT(log, HasSubstr("furnace description: " + (folder_ / "mesh.toml").string()));
 }
 
+TEST_F(ImportingFurnaces, AFurnaceAloneMakesNoStore) {
+  write_furnace("mesh.toml", furnace("beside"));
+  options_.leave_out = [] { return std::set<std::string>{"a"}; };
+
+  take({write("a", 0)});
+
+  EXPECT_FALSE(std::filesystem::exists(options_.store)) << "its only case was left out";
+}
+
 TEST_F(ImportingFurnaces, WithoutOneThereIsNoneAndThatIsTold) {
   EXPECT_THAT(take_and_listen({write("a", 0)}), HasSubstr("no furnace description"));
   EXPECT_EQ(in_store(), "none");

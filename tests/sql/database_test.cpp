@@ -72,7 +72,18 @@ TEST(Database, AMistakeInAStatementNamesTheFileAndTheFault) {
 
   EXPECT_ERROR(InputError, "no such table: nowhere", database.run("DELETE FROM nowhere"));
   EXPECT_ERROR(InputError, "a.sqlite", static_cast<void>(database.prepare("SELECT q FROM t")));
-  EXPECT_ERROR(InputError, "make it anew", database.prepare("SELECT i FROM t").bind(1, 1));
+  EXPECT_ERROR(InputError, "a.sqlite", database.prepare("SELECT i FROM t").bind(1, 1));
+}
+
+TEST(Database, OnlyABrokenFileIsSaidToNeedAnother) {
+  const TemporaryFolder folder;
+  const auto sound = folder / "a.sqlite", broken = folder / "b.sqlite";
+  const Database database(sound, ours, schema);
+  test::write_bytes(broken, std::string(4096, 'x'));
+
+  EXPECT_THAT([&] { database.run("DELETE FROM nowhere"); },
+              ::testing::ThrowsMessage<InputError>(::testing::Not(::testing::HasSubstr("make it anew"))));
+  EXPECT_ERROR(InputError, "make it anew", Database(broken, ours, schema));
 }
 
 TEST(Database, AFileOfAnotherKindOrVersionIsRefusedAndLeftAsItIs) {

@@ -10,6 +10,7 @@
 #include "elrom/model/bundle.hpp"
 #include "elrom/model/predictor.hpp"
 #include "study_fixture.hpp"
+#include "support/recording_log.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/throws.hpp"
 
@@ -68,6 +69,24 @@ TEST_F(Retraining, AWorseBundleIsThrownAway) {
   EXPECT_GT(report.error_after, report.error_before);
   EXPECT_EQ(test::read_bytes(model()), before);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "candidate.elrom"));
+}
+
+TEST_F(Retraining, JudgingCasesThatWereTrainedOnIsTold) {
+  test::RecordingLog log;
+  fit("linear", false);
+
+  (void)retrain(folder_.path(), settings("linear"), {}, log, {});
+
+  EXPECT_THAT(log.text(), ::testing::HasSubstr("the present model was trained on"));
+}
+
+TEST_F(Retraining, TrainingOnCasesThatWereHeldOutIsTold) {
+  test::RecordingLog log;
+  fit("linear");
+
+  (void)retrain(folder_.path(), settings("linear", false), {}, log, {});
+
+  EXPECT_THAT(log.text(), ::testing::HasSubstr("2 more cases were held out so far and are trained on now"));
 }
 
 TEST_F(Retraining, ABundleThatIsAsGoodIsTaken) {

@@ -57,11 +57,19 @@ struct TrialStore::Impl {
 
   // A file from before a hyperparameter was searched holds trials at its default.
   void add_missing_columns() const {
+    if (missing_columns().empty()) return;
+    database.run("BEGIN IMMEDIATE");
+    for (const auto& name : missing_columns())  // asked again: another process may have been first
+      database.run("ALTER TABLE trials ADD COLUMN " + declaration_with_default(name));
+    database.run("COMMIT");
+  }
+  [[nodiscard]] std::vector<std::string> missing_columns() const {
+    std::vector<std::string> missing;
     for (const auto& name : hyperparameter_columns) {
-      auto column = database.prepare("SELECT 1 FROM pragma_table_info('trials') WHERE name = ?");
-      if (!column.bind(1, name).next())
-        database.run("ALTER TABLE trials ADD COLUMN " + declaration_with_default(name));
+      auto row = database.prepare("SELECT 1 FROM pragma_table_info('trials') WHERE name = ?");
+      if (!row.bind(1, name).next()) missing.push_back(name);
     }
+    return missing;
   }
 };
 
