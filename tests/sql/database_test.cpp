@@ -75,6 +75,14 @@ TEST(Database, AMistakeInAStatementNamesTheFileAndTheFault) {
   EXPECT_ERROR(InputError, "a.sqlite", database.prepare("SELECT i FROM t").bind(1, 1));
 }
 
+TEST(Database, AStepThatFailsIsNotTheEndOfTheRows) {
+  const TemporaryFolder folder;
+  const Database database(folder / "a.sqlite", ours, "CREATE TABLE IF NOT EXISTS t (i INTEGER UNIQUE)");
+  database.run("INSERT INTO t VALUES (1)");
+
+  EXPECT_ERROR(InputError, "UNIQUE", database.prepare("INSERT INTO t VALUES (1)").next());
+}
+
 TEST(Database, OnlyABrokenFileIsSaidToNeedAnother) {
   const TemporaryFolder folder;
   const auto sound = folder / "a.sqlite", broken = folder / "b.sqlite";
