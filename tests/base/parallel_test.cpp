@@ -1,6 +1,7 @@
 #include "elrom/base/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -136,6 +137,30 @@ TEST(ParallelFor, AllThreadsCountAsTheCallerDoes) {
   std::fesetround(before);
 
   EXPECT_EQ(rounding, std::vector<int>(2, FE_UPWARD));
+}
+
+TEST(ParallelFor, WorkersFollowTheirCallersProcessors) {
+  if (available_threads() < 2) GTEST_SKIP() << "one processor: nothing to be confined to";
+  std::latch both(2);
+  parallel_for(2, 2, [&](std::size_t, int) { both.arrive_and_wait(); });  // a worker that may go anywhere
+  std::vector<int> allowed(2);
+
+  std::thread confined([&] {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(static_cast<std::size_t>(sched_getcpu()), &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    std::latch again(2);
+    parallel_for(2, 2, [&](std::size_t i, int) {
+      again.arrive_and_wait();
+      cpu_set_t own;
+      sched_getaffinity(0, sizeof own, &own);
+      allowed[i] = CPU_COUNT(&own);
+    });
+  });
+  confined.join();
+
+  EXPECT_EQ(allowed, std::vector<int>(2, 1));
 }
 
 }  // namespace

@@ -28,5 +28,20 @@ TEST(Text, NumbersReadBackExactly) {
   EXPECT_EQ(to_double("+2"), 2.0);
 }
 
+TEST(Text, DurationsAreInTheUnitThatFits) {
+  EXPECT_EQ(duration(0.25), "250 ms");
+  EXPECT_EQ(duration(1), "1.0 s");
+  EXPECT_EQ(duration(59.9), "59.9 s");
+  EXPECT_EQ(duration(61), "1 min 01 s");
+  EXPECT_EQ(duration(3599), "59 min 59 s");
+  EXPECT_EQ(duration(7500), "2 h 05 min");
+}
+
+TEST(Text, PartsBetweenSeparatorsMayBeEmpty) {
+  EXPECT_EQ(split("a,,b", ','), (std::vector<std::string>{"a", "", "b"}));
+  EXPECT_EQ(split("", ','), std::vector<std::string>{""});
+  EXPECT_EQ(split("a,", ','), (std::vector<std::string>{"a", ""}));
+}
+
 }  // namespace
 }  // namespace elrom::base
