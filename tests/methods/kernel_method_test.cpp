@@ -13,6 +13,7 @@
 #include "shrinkage.hpp"
 #include "support/changed_members.hpp"
 #include "support/toy_furnace.hpp"
+#include "support/unseen_error.hpp"
 #include "symmetry_classes.hpp"
 
 namespace elrom::methods {
@@ -24,14 +25,6 @@ std::vector<float> predict(const model::FieldModel& model, const field::CaseSet&
   model::Workspace workspace;
   predict_case(model, inputs, cases.mesh.n_planes, values, workspace);
   return values;
-}
-
-double unseen_error(const Method& method, const field::FieldData& data) {
-  const auto rows = math::all_rows(data.cases->n_cases());
-  const MatrixF predicted = method.cross_predict(data, load_grouped_folds(data.cases->loads, rows, 6), {});
-  const Eigen::VectorXd deviation = math::column_moments(data.values, rows).deviation;
-  return std::sqrt((predicted - data.values).cast<double>().squaredNorm() /
-                   (deviation.squaredNorm() * rows.size()));
 }
 
 TEST(SymmetryClasses, ProjectionsAddUpAndAreOrthogonal) {
@@ -137,10 +130,10 @@ TEST(KernelMethod, BeatsThePeersOnASymmetricFurnace) {
   const field::CaseSet cases = test::toy_cases(30);
   const field::FieldData data = test::toy_field(cases, 0.3);
 
-  const double kernel = unseen_error(*make_kernel_method(), data);
+  const double kernel = test::unseen_error(*make_kernel_method(), data);
 
   for (const std::string& peer : peer_names())
-    EXPECT_LT(kernel, unseen_error(*make_peer(peer), data)) << peer;
+    EXPECT_LT(kernel, test::unseen_error(*make_peer(peer), data)) << peer;
 }
 
 TEST(KernelMethod, MirroredInputsGiveTheMirroredField) {
@@ -161,8 +154,8 @@ TEST(KernelMethod, LearnsTheAsymmetryThatInputsExplain) {
   const field::CaseSet cases = test::toy_cases(40);
   const field::FieldData data = test::toy_field(cases, 0.02);
 
-  EXPECT_LT(unseen_error(*make_kernel_method(), data),
-            0.7 * unseen_error(*make_kernel_method({.antisymmetric = false}), data));
+  EXPECT_LT(test::unseen_error(*make_kernel_method(), data),
+            0.7 * test::unseen_error(*make_kernel_method({.antisymmetric = false}), data));
 }
 
 TEST(KernelMethod, EveryOptionIsPartOfTheKey) {
@@ -173,7 +166,7 @@ TEST(KernelMethod, EveryOptionIsPartOfTheKey) {
 TEST(KernelMethod, WorksWithoutMirrors) {
   const field::CaseSet cases = test::toy_cases(30, false);
 
-  EXPECT_LT(unseen_error(*make_kernel_method(), test::toy_field(cases)), 0.3);
+  EXPECT_LT(test::unseen_error(*make_kernel_method(), test::toy_field(cases)), 0.3);
 }
 
 TEST(KernelMethod, IsTheSameAfterSaveAndLoadAndForAnyThreads) {

@@ -8,6 +8,7 @@
 #include "support/changed_members.hpp"
 #include "support/throws.hpp"
 #include "support/toy_furnace.hpp"
+#include "support/unseen_error.hpp"
 
 namespace elrom::methods {
 namespace {
@@ -22,22 +23,13 @@ MatrixF predict_all(const model::FieldModel& model, const field::CaseSet& cases)
   return values;
 }
 
-/// Error of cases left out, relative to predicting the mean.
-double unseen_error(const Method& method, const field::FieldData& data) {
-  const auto rows = math::all_rows(data.cases->n_cases());
-  const MatrixF predicted = method.cross_predict(data, load_grouped_folds(data.cases->loads, rows, 6), {});
-  const Eigen::VectorXd deviation = math::column_moments(data.values, rows).deviation;
-  return std::sqrt((predicted - data.values).cast<double>().squaredNorm() /
-                   (deviation.squaredNorm() * rows.size()));
-}
-
 class EveryPeer : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Peers, EveryPeer, ::testing::ValuesIn(peer_names()));
 
 TEST_P(EveryPeer, PredictsUnseenCasesBetterThanTheMean) {
   const field::CaseSet cases = test::toy_cases(30);
 
-  EXPECT_LT(unseen_error(*make_peer(GetParam()), test::toy_field(cases)),
+  EXPECT_LT(test::unseen_error(*make_peer(GetParam()), test::toy_field(cases)),
             GetParam() == "nearest" ? 0.8 : 0.4);
 }
 

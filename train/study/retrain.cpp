@@ -56,6 +56,34 @@ double seconds_from_nothing(const std::filesystem::path& study, Settings setting
   return seconds;
 }
 
+std::vector<std::string> in_both(const std::vector<std::string>& names,
+                                 const std::vector<std::string>& others) {
+  std::vector<std::string> both;
+  for (const auto& name : names)
+    if (std::ranges::find(others, name) != others.end()) both.push_back(name);
+  return both;
+}
+
+std::vector<std::string> held_out_so_far(const std::filesystem::path& folder) {
+  const auto split = folder / "split.json";
+  return std::filesystem::exists(split) ? read_split(split).held_out : std::vector<std::string>();
+}
+
+/// Judging cases that a model was trained on flatters it; both ways of getting there are told.
+void tell_changed_split(const Study& study, const std::vector<std::string>& trained,
+                        const std::vector<std::string>& held_out_before, Log& log) {
+  std::vector<std::string> held_out;
+  for (const auto row : study.held_out()) held_out.push_back(study.store().cases()[row].inputs.name);
+  if (const auto seen = in_both(held_out, trained); !seen.empty())
+    log.warning("the present model was trained on " + seen.front() + " and " +
+                std::to_string(seen.size() - 1) +
+                " more of the held-out cases: its error there is too small");
+  if (const auto lost = in_both(held_out_before, study.cases().names); !lost.empty())
+    log.warning(
+        lost.front() + " and " + std::to_string(lost.size() - 1) +
+        " more cases were held out so far and are trained on now; split.held_out in study.toml keeps them out");
+}
+
 }  // namespace
 
 double held_out_error(const std::filesystem::path& bundle, const field::SnapshotStore& store,
@@ -86,38 +114,6 @@ double held_out_error(const std::filesystem::path& bundle, const field::Snapshot
   for (std::size_t f = 0; f < n_fields; ++f) sum += math::nrmse(error[f], departure[f], 0);
   return sum / static_cast<double>(n_fields);
 }
-
-namespace {
-
-std::vector<std::string> in_both(const std::vector<std::string>& names,
-                                 const std::vector<std::string>& others) {
-  std::vector<std::string> both;
-  for (const auto& name : names)
-    if (std::ranges::find(others, name) != others.end()) both.push_back(name);
-  return both;
-}
-
-std::vector<std::string> held_out_so_far(const std::filesystem::path& folder) {
-  const auto split = folder / "split.json";
-  return std::filesystem::exists(split) ? read_split(split).held_out : std::vector<std::string>();
-}
-
-/// Judging cases that a model was trained on flatters it; both ways of getting there are told.
-void tell_changed_split(const Study& study, const std::vector<std::string>& trained,
-                        const std::vector<std::string>& held_out_before, Log& log) {
-  std::vector<std::string> held_out;
-  for (const auto row : study.held_out()) held_out.push_back(study.store().cases()[row].inputs.name);
-  if (const auto seen = in_both(held_out, trained); !seen.empty())
-    log.warning("the present model was trained on " + seen.front() + " and " +
-                std::to_string(seen.size() - 1) +
-                " more of the held-out cases: its error there is too small");
-  if (const auto lost = in_both(held_out_before, study.cases().names); !lost.empty())
-    log.warning(
-        lost.front() + " and " + std::to_string(lost.size() - 1) +
-        " more cases were held out so far and are trained on now; split.held_out in study.toml keeps them out");
-}
-
-}  // namespace
 
 RetrainReport retrain(const std::filesystem::path& folder, const Settings& settings, const Toolbox& toolbox,
                       Log& log, const std::stop_token& stop, bool compare) {
