@@ -39,10 +39,11 @@ inline constexpr FileKind accuracy{"elrom-accuracy", {1, 0}, "report again with 
 inline constexpr FileKind learning_curve{
     "elrom-learning-curve", {1, 0}, "draw it again with elrom-report learning-curve"};
 inline constexpr FileKind cost{"elrom-cost", {1, 0}, "report again with elrom-report cost"};
+inline constexpr FileKind collision{"elrom-collision", {1, 0}, "train again with elrom-train collisions"};
 
-inline constexpr std::array all{mesh,       snapshots, bundle,   prediction,     manifest,
-                                check,      split,     timing,   trials,         stage,
-                                checkpoint, retrain,   accuracy, learning_curve, cost};
+inline constexpr std::array all{mesh,     snapshots,      bundle, prediction, manifest,   check,
+                                split,    timing,         trials, stage,      checkpoint, retrain,
+                                accuracy, learning_curve, cost,   collision};
 }  // namespace kinds
 
 /// What a file says of itself; nothing where it says nothing.
