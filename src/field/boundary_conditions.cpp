@@ -1,7 +1,6 @@
 #include "elrom/field/boundary_conditions.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "case_entries.hpp"
 #include "elrom/base/error.hpp"
@@ -47,15 +46,12 @@ void apply_setting(CaseInputs& inputs, std::string_view setting, const InputSche
     throw UsageError({.what = "no '='", .where = place, .expected = "name=value or name='value unit'"});
   const auto name = base::trim(setting.substr(0, equals));
   const auto right = base::trim(setting.substr(equals + 1));
-  const auto end = std::min(right.find_first_of(" \t"), right.size());
-  const auto value = base::to_double(right.substr(0, end));
-  if (!value || !std::isfinite(*value))
-    throw UsageError({.what = "no finite number", .where = place, .found = "'" + right + "'"});
-  const auto symbol = base::trim(std::string_view(right).substr(end));
+  const auto given = base::split_quantity(right);
+  if (!given) throw UsageError({.what = "no finite number", .where = place, .found = "'" + right + "'"});
   check(inputs.values.size() == schema.size(), "inputs and schema differ in size");
   const auto i = schema.index_of(name);
-  inputs.values[i] =
-      detail::to_si(*value, symbol.empty() ? schema[i].display_unit : symbol, schema[i], place);
+  inputs.values[i] = detail::to_si(
+      given->value, given->symbol.empty() ? schema[i].display_unit : given->symbol, schema[i], place);
 }
 
 }  // namespace elrom::field

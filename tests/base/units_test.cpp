@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "elrom/base/error.hpp"
+#include "support/throws.hpp"
 
 namespace elrom::base {
 namespace {
@@ -33,6 +34,38 @@ TEST(Units, HeadingSplitsIntoNameAndUnit) {
 }
 
 TEST(Units, DimensionsListTheirSymbols) { EXPECT_THAT(units_of("kg/s"), testing::Contains("t/h")); }
+
+TEST(Units, QuantitiesMayHaveAUnitWithOrWithoutASpace) {
+  EXPECT_DOUBLE_EQ(quantity("315um", "m"), 315e-6);
+  EXPECT_DOUBLE_EQ(quantity(" 315 \u00b5m ", "m"), 315e-6);
+  EXPECT_DOUBLE_EQ(quantity("1 mm", "m"), 1e-3);
+  EXPECT_DOUBLE_EQ(quantity("+2.5e-3", "m"), 2.5e-3);
+  EXPECT_DOUBLE_EQ(quantity("1e2kN/m", "N/m"), 1e5);
+  EXPECT_DOUBLE_EQ(quantity("90 %", "1"), 0.9);
+  EXPECT_EQ(split_quantity("60 t/h")->symbol, "t/h");
+}
+
+TEST(Units, QuantitiesOfAnotherKindAreRefused) {
+  EXPECT_ERROR(InputError, "no finite number: found 'um'", quantity("um", "m"));
+  EXPECT_ERROR(InputError, "no finite number: found ''", quantity("", "m"));
+  EXPECT_ERROR(InputError, "no finite number: found 'nan'", quantity("nan", "m"));
+  EXPECT_ERROR(InputError, "no finite number", quantity("1e999", "m"));
+  EXPECT_ERROR(InputError, "unknown unit 'parsec'", quantity("3 parsec", "m"));
+  EXPECT_ERROR(InputError, "another dimension: found 'kg', expected m, mm, um", quantity("3 kg", "m"));
+}
+
+TEST(Units, RangesShareTheUnitOfTheirSecondEnd) {
+  const auto both = [](std::string_view text, std::string_view si) {
+    const auto [low, high] = interval(text, si);
+    return std::vector{low, high};
+  };
+  EXPECT_EQ(both("0:20", "m/s"), (std::vector{0.0, 20.0}));
+  EXPECT_EQ(both("300:354um", "m"), (std::vector{quantity("300um", "m"), quantity("354um", "m")}));
+  EXPECT_EQ(both("300um:1 mm", "m"), (std::vector{quantity("300um", "m"), 1e-3}));
+  EXPECT_EQ(both("2 m/s", "m/s"), (std::vector{2.0, 2.0}));
+  EXPECT_ERROR(InputError, "no finite number", interval("3:", "m"));
+  EXPECT_ERROR(InputError, "no range: found '1:2:3', expected low:high", interval("1:2:3", "m"));
+}
 
 }  // namespace
 }  // namespace elrom::base
