@@ -14,7 +14,9 @@ namespace {
 using Vector = Eigen::Array3d;
 constexpr double two_pi = 2 * std::numbers::pi;
 
-Vector cross(const Vector& a, const Vector& b) { return a.matrix().cross(b.matrix()).array(); }
+Vector cross(const Vector& a, const Vector& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
 
 double drawn(base::Random& random, const Range& range) { return random.uniform(range.low, range.high); }
 
