@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -146,12 +147,19 @@ class Learning {
       final.n_estimators = static_cast<int>(std::lround(final.n_estimators * settings_.final_rounds));
     const TreeBudget budget{.patience = settings_.patience};
     std::vector<GrownTrees> grown(static_cast<std::size_t>(targets_.cols()));
+    std::atomic<std::int64_t> done = 0;
+    const auto tell = [&](std::int64_t n) {
+      context_.log->progress(
+          {"grow " + context_.name, n, static_cast<std::int64_t>(grown.size()), "outputs", {}});
+    };
+    tell(0);
     base::parallel_for(
         grown.size(), context_.n_threads,
         [&](std::size_t k, int) {
           const auto output = static_cast<Eigen::Index>(k);
           grown[k] = trainer_.train({records(train_, output), records(validation_, output)}, final, budget,
                                     context_.seed.derive("fit").derive(k), nullptr, context_.stop);
+          tell(++done);
         },
         context_.stop);
     join(grown, learned);

@@ -24,8 +24,8 @@ namespace elrom::surrogate {
 using TreeStore = networks::TrialStoreOf<TreeHyperparameters>;
 
 struct TreeSettings {
-  std::string algorithm = "sobol_bobyqa";  ///< of NLopt; networks/settings.hpp
-  int trials = 50;                         ///< 0: `fixed` is taken without a search
+  std::string algorithm = "direct";  ///< of NLopt; networks/settings.hpp
+  int trials = 50;                   ///< 0: `fixed` is taken without a search
   bool prune = true;
   std::size_t searched_output = 0;      ///< whose trees the trials grow
   std::size_t search_records = 15'000;  ///< that trials learn from and are judged by, at most
