@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "collision_words.hpp"
 #include "commands.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/case_files.hpp"
@@ -20,13 +21,18 @@ nlohmann::ordered_json describe(const std::filesystem::path& path) {
     if (kind == io::kinds::snapshots.name) return ingest::describe_store(field::SnapshotStore::open(path));
     if (kind == io::kinds::mesh.name) return ingest::describe_mesh(field::read_mesh(path));
     if (kind == io::kinds::prediction.name) return ingest::describe_prediction(path);
+    if (kind == io::kinds::collisions.name) return describe_collisions(particle::read_collisions(path));
     if (!kind.empty())
       throw InputError({.what = "nothing to inspect",
                         .where = path.string(),
                         .found = kind,
-                        .expected = "a store, a mesh, a case, a bundle or a prediction"});
+                        .expected = "a store, a mesh, a case, a bundle, a prediction or collisions"});
   }
   return ingest::describe_case(ingest::read_case(path));
+}
+
+std::string in_words(const nlohmann::ordered_json& description) {
+  return description["kind"] == "collisions" ? collision_words(description) : ingest::in_words(description);
 }
 
 }  // namespace
@@ -39,16 +45,18 @@ void add_inspect(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<Options>();
   auto* command = program.add_subcommand(
       "inspect",
-      "Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle or a prediction: "
-      "cases, loads, inputs, fields, units.");
-  command->add_option("FILE", options->path, "Store, mesh, case, bundle (model.elrom) or prediction (.hdf)")
+      "Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle, a prediction or a set of "
+      "collisions: cases, loads, inputs, fields, units; kinds of collisions, speeds, energy lost.");
+  command
+      ->add_option("FILE", options->path,
+                   "Store, mesh, case, bundle (model.elrom), prediction (.hdf) or collisions")
       ->required()
       ->type_name("FILE");
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &chosen] {
     chosen = [options] {
       const auto description = describe(options->path);
-      fmt::print("{}", options->json ? description.dump(2) + "\n" : ingest::in_words(description));
+      fmt::print("{}", options->json ? description.dump(2) + "\n" : in_words(description));
       return 0;
     };
   });

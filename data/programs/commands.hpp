@@ -15,5 +15,6 @@ void add_mesh(CLI::App& program, Work& chosen);
 void add_inspect(CLI::App& program, Work& chosen);
 void add_check(CLI::App& program, Work& chosen);
 void add_generate(CLI::App& program, Work& chosen);
+void add_collisions(CLI::App& program, Work& chosen);
 
 }  // namespace elrom::programs

@@ -1,4 +1,4 @@
-// elrom-data: CFD results into snapshot stores. Each subcommand lies in its own command_<name>.cpp.
+// elrom-data: CFD results into snapshot stores, collisions into sets. Each subcommand lies in its own command_<name>.cpp.
 
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
@@ -10,7 +10,7 @@ namespace {
 using elrom::ExitStatus;
 
 int run(int argc, char** argv) {
-  CLI::App program("ELROM: prepare CFD results for training.", "elrom-data");
+  CLI::App program("ELROM: prepare CFD results and collisions for training.", "elrom-data");
   program.set_version_flag("--version", elrom::program_version());
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   elrom::programs::add_check(program, chosen);
   elrom::programs::add_mesh(program, chosen);
   elrom::programs::add_generate(program, chosen);
+  elrom::programs::add_collisions(program, chosen);
   program.footer(
       "Exit status: 0 done, 2 wrong command line, 3 wrong input, 1 trouble of the machine, 130 interrupted.");
   try {

@@ -94,4 +94,17 @@ FileLock::FileLock(const std::filesystem::path& path)
 
 FileLock::~FileLock() { ::close(descriptor_); }
 
+std::filesystem::path lock_beside(const std::filesystem::path& file) {
+  return file.parent_path() / ("." + file.filename().string() + ".lock");
+}
+
+void remove_remains(const std::filesystem::path& target) noexcept {
+  const auto prefix = "." + target.filename().string() + ".";
+  std::error_code fault;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_of(target), fault)) {
+    const auto name = entry.path().filename().string();
+    if (name.starts_with(prefix) && name.ends_with(".tmp")) std::filesystem::remove(entry.path(), fault);
+  }
+}
+
 }  // namespace elrom::base

@@ -14,21 +14,6 @@ namespace elrom::field {
 
 namespace {
 
-std::filesystem::path lock_path(const std::filesystem::path& store) {
-  return store.parent_path() / ("." + store.filename().string() + ".lock");
-}
-
-// Temporaries that killed writers left behind; the lock is held, so they are nobody's.
-void remove_remains(const std::filesystem::path& store) {
-  const auto prefix = "." + store.filename().string() + ".";
-  const auto folder = store.has_parent_path() ? store.parent_path() : std::filesystem::path(".");
-  std::error_code fault;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, fault)) {
-    const auto name = entry.path().filename().string();
-    if (name.starts_with(prefix) && name.ends_with(".tmp")) std::filesystem::remove(entry.path(), fault);
-  }
-}
-
 std::string content_digest(const MatrixF& fields) {
   return base::sha256(std::as_bytes(std::span(fields.data(), static_cast<std::size_t>(fields.size()))));
 }
@@ -181,8 +166,9 @@ struct SnapshotWriter::Impl {
 
 SnapshotWriter::SnapshotWriter(const std::filesystem::path& path, const Mesh& mesh, const InputSchema& schema,
                                const std::vector<FieldInfo>& fields, const std::optional<Furnace>& furnace)
-    : impl_(new Impl{path, mesh, schema, fields, furnace, base::FileLock(lock_path(path)), {}, {}, {}}) {
-  remove_remains(path);
+    : impl_(new Impl{
+          path, mesh, schema, fields, furnace, base::FileLock(base::lock_beside(path)), {}, {}, {}}) {
+  base::remove_remains(path);
   impl_->begin();
 }
 

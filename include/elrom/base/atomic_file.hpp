@@ -51,5 +51,10 @@ class FileLock {
  private:
   int descriptor_;
 };
+/// The lock file of one file, beside it: ".<name>.lock".
+[[nodiscard]] std::filesystem::path lock_beside(const std::filesystem::path& file);
+/// Temporaries that killed writers of `target` left behind: for
+/// who holds its lock, so that they are nobody's.
+void remove_remains(const std::filesystem::path& target) noexcept;
 
 }  // namespace elrom::base

@@ -39,10 +39,33 @@ inline constexpr FileKind accuracy{"elrom-accuracy", {1, 0}, "report again with 
 inline constexpr FileKind learning_curve{
     "elrom-learning-curve", {1, 0}, "draw it again with elrom-report learning-curve"};
 inline constexpr FileKind cost{"elrom-cost", {1, 0}, "report again with elrom-report cost"};
+inline constexpr FileKind collisions{
+    "elrom-collisions", {1, 0}, "make them again with elrom-data collisions"};
+inline constexpr FileKind collision_summary{
+    "elrom-collision-summary", {1, 0}, "make it again with elrom-data collisions"};
+inline constexpr FileKind collision{"elrom-collision", {1, 0}, "train again with elrom-train collisions"};
+inline constexpr FileKind collision_report{
+    "elrom-collision-report", {1, 0}, "report again with elrom-report collisions"};
 
-inline constexpr std::array all{mesh,       snapshots, bundle,   prediction,     manifest,
-                                check,      split,     timing,   trials,         stage,
-                                checkpoint, retrain,   accuracy, learning_curve, cost};
+inline constexpr std::array all{mesh,
+                                snapshots,
+                                bundle,
+                                prediction,
+                                manifest,
+                                check,
+                                split,
+                                timing,
+                                trials,
+                                stage,
+                                checkpoint,
+                                retrain,
+                                accuracy,
+                                learning_curve,
+                                cost,
+                                collisions,
+                                collision_summary,
+                                collision,
+                                collision_report};
 }  // namespace kinds
 
 /// What a file says of itself; nothing where it says nothing.
