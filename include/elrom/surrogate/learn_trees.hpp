@@ -69,14 +69,14 @@ struct LearnedTrees {
 
 /// The source's protocol (the files' `document`).
 struct DocumentSettings {
-  double test = 0.05;  ///< share of the pairs that judges, never learned from
+  double test = 0.05;  ///< share of the pairs that judges, never learned from: the last ones
   TreeSettings trees = {};
 };
 
 /// One range of speeds.
 struct DocumentRange {
-  std::vector<std::size_t> test;  ///< pairs of the set that judged
-  std::array<double, 6> mae{};    ///< on them, m/s: of sphere 1, then of sphere 2, by the model of this range
+  std::size_t n_test = 0;       ///< the last pairs of the set judged: nothing of them was learned
+  std::array<double, 6> mae{};  ///< on them, m/s: of sphere 1, then of sphere 2, by the model of this range
   std::array<double, 6> median_relative{};  ///< median of |error| / |value|
   TreeHyperparameters hyperparameters;
   std::array<int, 6> rounds{};
