@@ -2,9 +2,9 @@
 // Boosted trees learned from tables of records, their hyperparameters searched; and the source's surrogate of
 // collisions made of them.
 //
-// One search serves all outputs of a table: its trials grow the trees of one output on a sample of the records
-// and are pruned by successive halving (networks/search.hpp; an epoch is a round). What it finds then grows the
-// trees of every output, on all records, side by side.
+// One search serves all outputs of a table: its trials grow the trees of one output on a sample of the
+// records and are pruned by successive halving (networks/search.hpp; an epoch is a round). What it finds then
+// grows the trees of every output, on all records, side by side.
 
 #include <array>
 #include <cstdint>
@@ -60,7 +60,7 @@ struct LearnedTrees {
   double search_seconds = 0, fit_seconds = 0;
 };
 
-/// @param inputs (n, k) @param targets (n, m): m groups of trees @param weights (n) of the records; empty: alike
+/// @param inputs (n, k) @param targets (n, m): m groups of trees @param weights (n) of records; empty: alike
 /// The same arguments give the same trees, whatever the number of threads and with or without stored trials.
 /// @throws InputError for fewer than ten records, or numbers that are not finite; Interrupted
 [[nodiscard]] LearnedTrees learn_trees(const particle::Table& inputs, const particle::Table& targets,
