@@ -37,7 +37,7 @@ TEST(ContactLaw, GivesThePublishedHertzContactOfLimestone) {
   EXPECT_NEAR(contact.duration(20), 54.20e-6, 0.01e-6);
 }
 
-// The rule's rounded 2.87 against the exact 2.868 (particles.md 1: 12.235 us against 12.228).
+// The rule's rounded 2.87 against the exact 2.868: 12.235 us against 12.228).
 TEST(StepTimes, HertzIsTheContactsDurationButForItsRoundedConstant) {
   const auto times = step_times(glass_law, 20, glass, glass);
   EXPECT_NEAR(times.hertz / PairContact(glass_law, glass, glass).duration(20), 12.235 / 12.228, 2e-4);
@@ -69,7 +69,7 @@ TEST(StepTimes, LinearStepIsATwentiethOfTheContact) {
   EXPECT_NEAR(times.cundall / (2 * std::sqrt(m12 / 1000)), 1, 1e-12);
 }
 
-// gamma = -2 m12 ln e / tau (particles.md 1).
+// gamma = -2 m12 ln e / tau.
 TEST(ContactLaw, LinearDampingIsTheClosedForm) {
   const ContactLaw law{.restitution = 0.8, .stiffness = 500};
   const PairContact contact(law, {315e-6, 1000}, {475e-6, 1200});

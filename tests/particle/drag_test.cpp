@@ -10,7 +10,7 @@
 namespace elrom::particle {
 namespace {
 
-// particles.md 9: 315 and 475 um, 1000 kg/m3, in air.
+// Published: 315 and 475 um, 1000 kg/m3, in air.
 TEST(Drag, GivesThePublishedTerminalSpeeds) {
   EXPECT_NEAR(terminal_speed(315e-6, 1000, {}), 1.237, 5e-4);
   EXPECT_NEAR(terminal_speed(475e-6, 1000, {}), 1.926, 5e-4);

@@ -24,7 +24,7 @@ TEST(ExactModel, GivesTheClosedFormOfACentralCollision) {
   EXPECT_NEAR(found.velocity_2(0, 0), 0.9 * 3 + 0.1 * -2, 1e-14);
 }
 
-// Kharaz's sphere on a wall, sliding: 40 degrees at 3.9 m/s, mu 0.092, e 1 (particles.md 9).
+// Kharaz's sphere on a wall, sliding: 40 degrees at 3.9 m/s, mu 0.092, e 1.
 TEST(ExactModel, GivesTheClosedFormOfSliding) {
   const double along = 3.9 * std::sin(40 * std::numbers::pi / 180),
                normal = 3.9 * std::cos(40 * std::numbers::pi / 180);

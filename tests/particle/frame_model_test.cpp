@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/random.hpp"
 #include "elrom/particle/chebyshev.hpp"
 #include "elrom/particle/exact_model.hpp"
 #include "elrom/particle/pair_solver.hpp"

@@ -24,7 +24,7 @@ ContactLaw stiff(double restitution, double friction) {
 
 double mass_of(double diameter, double density) { return sphere_mass(diameter, density); }
 
-// Central, equal spheres, linear: v'_A = (1-e)/2 v_A + (1+e)/2 v_B (particles.md 1), at every e.
+// Central, equal spheres, linear: v'_A = (1-e)/2 v_A + (1+e)/2 v_B, at every e.
 TEST(PairSolver, GivesTheClosedFormOfACentralLinearContact) {
   for (const double e : {1.0, 0.95, 0.9, 0.5, 0.1, 0.01, 0.0}) {
     const auto pairs = one_pair({3, 0, 0}, {-2, 0, 0}, {1, 0, 0});
@@ -118,7 +118,7 @@ ContactLaw alumina() {
           .poisson_ratio = 0.24};
 }
 
-// Kharaz, Gorham & Salman 2001, measured (particles.md 9).
+// Kharaz, Gorham & Salman 2001, measured.
 TEST(PairSolver, ReboundsAsMeasured) {
   const double angle[]{20.56, 30.38, 39.62, 49.78, 60.06}, rebound[]{12.36, 21.78, 32.55, 45.11, 57.37};
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(kharaz(angle[i], alumina()).angle, rebound[i], 1.1) << angle[i];

@@ -26,8 +26,8 @@ std::shared_ptr<const particle::Regressor> learn_network(const FrameRecords& rec
                                                          const LearnSettings& settings,
                                                          const LearnTools& tools) {
   if (tools.networks == nullptr)
-    throw NotBuiltError({.what = "networks need LibTorch, which this build left out",
-                         .advice = "build with -DELROM_TORCH=ON, or take --regressor chebyshev"});
+    throw NotBuiltError(Problem{.what = "networks need LibTorch, which this build left out",
+                                .advice = "build with -DELROM_TORCH=ON, or take --regressor chebyshev"});
   const auto inputs = scaler_of(records.inputs), outputs = scaler_of(records.targets);
   const auto n_validation =
       static_cast<Eigen::Index>(validation_share * static_cast<double>(records.inputs.rows()));

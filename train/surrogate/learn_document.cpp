@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
@@ -12,12 +11,12 @@ namespace {
 
 using particle::Table;
 
+constexpr std::size_t fewest_pairs = 20;
+
 struct LearnedPart {
   std::optional<particle::DocumentPart> part;
   DocumentRange range;
 };
-
-math::Standardiser standardiser_of(const Table& rows) { return math::Standardiser(MatrixD(rows.matrix())); }
 
 Table scaled(const Table& rows, const math::Standardiser& scaler) {
   return (rows.rowwise() - scaler.mean().transpose().array()).rowwise() / scaler.scale().transpose().array();
@@ -25,42 +24,37 @@ Table scaled(const Table& rows, const math::Standardiser& scaler) {
 
 void judge(const Table& before, const Table& after, LearnedPart& learned) {
   auto& range = learned.range;
-  const Table error =
-      (learned.part->evaluate(before(range.test, Eigen::all)) - after(range.test, Eigen::all)).abs();
-  const Table size = after(range.test, Eigen::all).abs();
+  const Table error = (learned.part->evaluate(before) - after).abs();
   for (std::size_t k = 0; k < 6; ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     range.mae[k] = error.col(column).mean();
-    const Eigen::ArrayXd relative = error.col(column) / size.col(column).max(1e-300);
+    const Eigen::ArrayXd relative = error.col(column) / after.col(column).abs().max(1e-300);
     range.median_relative[k] = math::median({relative.begin(), relative.end()});
   }
 }
 
 LearnedPart learn_range(const particle::CollisionSet& set, const DocumentSettings& settings,
                         const TreeTrainer& trainer, const TreeContext& context) {
-  const Table before = particle::six_velocities(set.pairs.before);
-  const Table after = particle::six_velocities(set.parting.after);
-  if (set.size() < 20)
+  if (set.size() < fewest_pairs)
     throw InputError(Problem{.what = "too few collisions to learn from",
                              .found = std::to_string(set.size()),
-                             .expected = "20 or more"});
-  const auto n_test = particle::n_test_pairs(set.size(), settings.test);
-  std::vector<std::size_t> rows(set.size());
-  std::iota(rows.begin(), rows.end(), std::size_t{0});
+                             .expected = std::to_string(fewest_pairs) + " or more"});
+  const Table before = particle::six_velocities(set.pairs.before);
+  const Table after = particle::six_velocities(set.parting.after);
   LearnedPart learned;
-  learned.range.test.assign(rows.end() - static_cast<std::ptrdiff_t>(n_test), rows.end());
-  rows.resize(rows.size() - n_test);
+  learned.range.n_test = particle::n_test_pairs(set.size(), settings.test);
+  const auto n_test = static_cast<Eigen::Index>(learned.range.n_test), n_known = before.rows() - n_test;
 
-  const Table known = before(rows, Eigen::all);
-  const auto scaler = standardiser_of(known);
+  const Table known = before.topRows(n_known);
+  const math::Standardiser scaler(MatrixD(known.matrix()));
   const auto trees =
-      learn_trees(scaled(known, scaler), after(rows, Eigen::all), {}, settings.trees, trainer, context);
+      learn_trees(scaled(known, scaler), after.topRows(n_known), {}, settings.trees, trainer, context);
   learned.part = particle::DocumentPart{scaler, *trees.trees};
   learned.range.hyperparameters = trees.hyperparameters;
   std::ranges::copy(trees.rounds, learned.range.rounds.begin());
   learned.range.search_seconds = trees.search_seconds;
   learned.range.fit_seconds = trees.fit_seconds;
-  judge(before, after, learned);
+  judge(before.bottomRows(n_test), after.bottomRows(n_test), learned);
   return learned;
 }
 

@@ -19,8 +19,8 @@ void require(int status) {
                               .advice = "ELROM was tried with XGBoost 1.7"});
 }
 
-// Children beside each other and behind their parent, whatever XGBoost's numbers are; what it pruned away has no
-// parent and stays behind.
+// Children beside each other and behind their parent, whatever XGBoost's numbers are; what it pruned away has
+// no parent and stays behind.
 void append(const nlohmann::json& tree, Booster::Flat& flat) {
   const auto left = tree.at("left_children").get<std::vector<int>>();
   const auto right = tree.at("right_children").get<std::vector<int>>();

@@ -1,6 +1,6 @@
 #pragma once
-// XGBoost's C interface, owned: tables in, trees grown round by round, predictions, flat trees out. Internal to
-// train/xgboost. Every failure of XGBoost becomes an Error with its words.
+// XGBoost's C interface, owned: tables in, trees grown round by round, predictions, flat trees out. Every
+// failure of XGBoost becomes an Error with its words. Internal to train/xgboost.
 
 #include <Eigen/Core>
 #include <map>

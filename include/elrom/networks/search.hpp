@@ -1,5 +1,6 @@
 #pragma once
-// Search for hyperparameters, of networks or any other struct of them, with NLopt's derivative-free algorithms over the unit cube.
+// Search for hyperparameters, of networks or any other struct of them, with NLopt's derivative-free
+// algorithms over the unit cube.
 //
 // A point is decoded to hyperparameters (logarithmic bins for rates, units and batch sizes,
 // equal bins for layers); decoded points are memoised and only distinct ones count as trials.

@@ -42,8 +42,8 @@ template <class H>
 /// One table of the file, for hyperparameters of any struct. Thread rule: every member from any thread.
 class TrialTable {
  public:
-  /// @param defaults of the hyperparameters: their names and types, and what a column that an older file lacks
-  /// stands for
+  /// @param defaults of the hyperparameters: their names and types, and what a column
+  /// that an older file lacks stands for
   TrialTable(const std::filesystem::path& path, const std::string& table, NamedValues defaults);
   ~TrialTable();
   TrialTable(const TrialTable&) = delete;

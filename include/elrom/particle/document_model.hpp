@@ -27,14 +27,14 @@ class DocumentModel final : public CollisionModel {
     double speed;  ///< m/s: this part is asked where neither sphere is faster
     DocumentPart part;
   };
-  /// @throws InputError for parts that do not take and give six numbers, a scale or speed that is not positive
+  /// @throws InputError for parts that do not take and give six numbers, a scale or speed not above 0
   explicit DocumentModel(DocumentPart full, std::optional<Low> low = {},
                          const std::string& where = "document");
 
   [[nodiscard]] SurrogateKind kind() const override { return SurrogateKind::document; }
   [[nodiscard]] std::string text() const override;
   void impulses(const Pairs& pairs, Impulses& impulses) const override;
-  /// The velocities after, whatever the normal: what the source's figures are made of. @param velocities (n, 6)
+  /// The velocities after, whatever the normal: what the source's figures show. @param velocities (n, 6)
   [[nodiscard]] Table velocities_after(const Table& velocities) const;
 
   /// Tensors under "document/...".

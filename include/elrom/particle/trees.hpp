@@ -1,7 +1,7 @@
 #pragma once
 // Boosted regression trees, flat and ready to evaluate: no XGBoost needed.
 //
-// All trees' nodes lie in one array. A node with feature >= 0 sends x[feature] >= threshold to left + 1 and all
+// All trees' nodes lie in one array. A node with feature >= 0 sends x[feature] >= threshold to left + 1, all
 // else (NaN too) to `left`: children lie beside each other. One with feature < 0 is a leaf that adds `value`.
 // Children lie behind their parent, and every node is a root or the child of one node, so that evaluation
 // takes no more steps than there are nodes, for any file that read() accepts.
@@ -50,8 +50,8 @@ class Trees final : public Regressor {
   [[nodiscard]] static std::unique_ptr<Trees> read(const io::TensorFile& file, const std::string& prefix);
 
  private:
-  // What evaluation reads of a node. A leaf sends every sample to itself, so that all samples of a tree take as
-  // many steps as its deepest leaf asks for, without a branch.
+  // What evaluation reads of a node. A leaf sends every sample to itself, so that all samples of a tree take
+  // as many steps as its deepest leaf asks for, without a branch.
   struct Step {
     std::int32_t input, left;  // input: where the feature's values begin in a block
     float threshold, leaf;

@@ -2,9 +2,9 @@
 // Boosted trees learned from tables of records, their hyperparameters searched; and the source's surrogate of
 // collisions made of them.
 //
-// One search serves all outputs of a table: its trials grow the trees of one output on a sample of the records
-// and are pruned by successive halving (networks/search.hpp; an epoch is a round). What it finds then grows the
-// trees of every output, on all records, side by side.
+// One search serves all outputs of a table: its trials grow the trees of one output on a sample of the
+// records and are pruned by successive halving (networks/search.hpp; an epoch is a round). What it finds then
+// grows the trees of every output, on all records, side by side.
 
 #include <array>
 #include <cstdint>
@@ -60,7 +60,7 @@ struct LearnedTrees {
   double search_seconds = 0, fit_seconds = 0;
 };
 
-/// @param inputs (n, k) @param targets (n, m): m groups of trees @param weights (n) of the records; empty: alike
+/// @param inputs (n, k) @param targets (n, m): m groups of trees @param weights (n) of records; empty: alike
 /// The same arguments give the same trees, whatever the number of threads and with or without stored trials.
 /// @throws InputError for fewer than ten records, or numbers that are not finite; Interrupted
 [[nodiscard]] LearnedTrees learn_trees(const particle::Table& inputs, const particle::Table& targets,
@@ -69,14 +69,14 @@ struct LearnedTrees {
 
 /// The source's protocol (the files' `document`).
 struct DocumentSettings {
-  double test = 0.05;  ///< share of the pairs that judges, never learned from
+  double test = 0.05;  ///< share of the pairs that judges, never learned from: the last ones
   TreeSettings trees = {};
 };
 
 /// One range of speeds.
 struct DocumentRange {
-  std::vector<std::size_t> test;  ///< pairs of the set that judged
-  std::array<double, 6> mae{};    ///< on them, m/s: of sphere 1, then of sphere 2, by the model of this range
+  std::size_t n_test = 0;       ///< the last pairs of the set judged: nothing of them was learned
+  std::array<double, 6> mae{};  ///< on them, m/s: of sphere 1, then of sphere 2, by the model of this range
   std::array<double, 6> median_relative{};  ///< median of |error| / |value|
   TreeHyperparameters hyperparameters;
   std::array<int, 6> rounds{};
