@@ -28,6 +28,8 @@ State choose(const Mask& mask, const State& yes, const State& no) {
           select(mask, yes.spin, no.spin), select(mask, yes.spring, no.spring)};
 }
 
+constexpr double shortest_step = 1.0 / 128;  // of a usual one
+
 // Constants of the pairs in the lanes.
 struct Constants {
   Lane reduced_mass, distance, stiffness, damping, tangential_stiffness, tangential_damping, friction, step;
@@ -62,13 +64,14 @@ class Contact {
   }
 
   [[nodiscard]] State advance(const State& state, const Lane& step) const {
-    const auto k1 = derivative(state);
-    const auto k2 = derivative(State(state).add(0.5 * step, k1));
-    const auto k3 = derivative(State(state).add(0.5 * step, k2));
-    const auto k4 = derivative(State(state).add(step, k3));
+    const Lane loaded = law == LawKind::hertz && rough ? sqrt(max(overlap(state), Lane(0.0))) : Lane(1.0);
+    const auto k1 = derivative(state, loaded);
+    const auto k2 = derivative(State(state).add(0.5 * step, k1), loaded);
+    const auto k3 = derivative(State(state).add(0.5 * step, k2), loaded);
+    const auto k4 = derivative(State(state).add(step, k3), loaded);
     State next = state;
     next.add(step / 6, k1).add(step / 3, k2).add(step / 3, k3).add(step / 6, k4);
-    if constexpr (rough) settle_spring(state, next);
+    if constexpr (rough) settle_spring(next, loaded);
     return next;
   }
 
@@ -96,40 +99,50 @@ class Contact {
     return f;
   }
 
-  // Largest friction now.
-  [[nodiscard]] Lane limit(const Forces& f) const { return c_.friction * max(f.normal, -f.normal); }
+  // Largest friction now: none where the damper pulls.
+  [[nodiscard]] Lane limit(const Forces& f) const { return c_.friction * max(f.normal, Lane(0.0)); }
 
-  [[nodiscard]] State derivative(const State& state) const {
+  static LaneVector cut(const LaneVector& force, const Lane& most) {
+    const Lane size = sqrt(dot(force, force));
+    return select(size > most, most / size, Lane(1.0)) * force;
+  }
+
+  // What is left of a spring's force that was there at the step's beginning, where sqrt(overlap) was `loaded`.
+  [[nodiscard]] static Lane kept(const Forces& f, const Lane& loaded) {
+    if constexpr (law == LawKind::linear) return 1.0;
+    return select(f.spring_power < loaded, f.spring_power / loaded, Lane(1.0));
+  }
+
+  // `spring` within a step: the force as it was at `loaded`, so that its rate stays finite where spheres part.
+  [[nodiscard]] State derivative(const State& state, const Lane& loaded) const {
     const auto f = forces(state);
     State rate;
     rate.place = state.velocity;
     rate.velocity = (f.normal * per_mass_) * f.direction;
     if constexpr (rough) {
       const Lane lever = f.distance / c_.distance;
-      const LaneVector slip = state.velocity - dot(state.velocity, f.direction) * f.direction -
-                              lever * cross(state.spin, f.direction);
-      LaneVector force = state.spring + (c_.tangential_damping * f.damper_power) * slip;
-      const Lane size = sqrt(dot(force, force)), most = limit(f);
-      force *= select(size > most, most / size, Lane(1.0));
+      const LaneVector across = state.velocity - dot(state.velocity, f.direction) * f.direction;
+      const LaneVector slip = across - lever * cross(state.spin, f.direction);
+      // The spring alone is cut first: one that slides follows the limit within the step.
+      const Lane most = limit(f);
+      const LaneVector force = cut(
+          cut(kept(f, loaded) * state.spring, most) + (c_.tangential_damping * f.damper_power) * slip, most);
       rate.velocity -= per_mass_ * force;
       rate.spin = (2.5 * per_mass_ * lever) * cross(f.direction, force);
-      rate.spring = (c_.tangential_stiffness * f.spring_power) * slip;
+      rate.spring = (c_.tangential_stiffness * max(f.spring_power, loaded)) * slip -
+                    (dot(state.spring, across) / f.distance) * f.direction;
     } else {
       rate.spin = rate.spring = {0.0, 0.0, 0.0};
     }
     return rate;
   }
 
-  // The spring turns with the normal, loses what its stiffness loses, and slides where it would pull more than friction.
-  void settle_spring(const State& before, State& after) const {
+  // The spring lies across the normal, has lost what its stiffness lost, and slides where it would pull more than
+  // friction.
+  void settle_spring(State& after, const Lane& loaded) const {
     const auto f = forces(after);
     after.spring -= dot(after.spring, f.direction) * f.direction;
-    if constexpr (law == LawKind::hertz) {
-      const Lane was = sqrt(max(overlap(before), Lane(0.0)));
-      after.spring *= select(f.spring_power < was, f.spring_power / was, Lane(1.0));
-    }
-    const Lane size = sqrt(dot(after.spring, after.spring)), most = limit(f);
-    after.spring *= select(size > most, most / size, Lane(1.0));
+    after.spring = cut(kept(f, loaded) * after.spring, limit(f));
   }
 
   const Constants& c_;
@@ -190,23 +203,29 @@ class Group {
   }
 
  private:
+  // Hertz's damper goes with the fourth root of the overlap, so steps are short where spheres begin to touch and
+  // where they part.
+  [[nodiscard]] Lane step_now() const {
+    if constexpr (law == LawKind::linear) return c_.step;
+    const Lane rate = contact_.rate(state_);
+    return min(c_.step, max(shortest_step * c_.step, 0.5 * contact_.overlap(state_) / max(rate, -rate)));
+  }
+
   void advance() {
-    const State next = contact_.advance(state_, c_.step);
+    const Lane step = step_now();
+    const State next = contact_.advance(state_, step);
     const Lane now = contact_.overlap(state_), then = contact_.overlap(next);
-    const Lane rate_now = contact_.rate(state_) * c_.step, rate_then = contact_.rate(next) * c_.step;
+    const Lane rate_now = contact_.rate(state_) * step, rate_then = contact_.rate(next) * step;
     // The peak of a step that turns round.
     const Mask turns = rate_now > 0 && rate_then < 0;
     const Lane peak = now + 0.5 * rate_now * rate_now / (rate_now - rate_then);
     greatest_ = select(active_, max(greatest_, max(then, select(turns, peak, then))), greatest_);
     const Mask parts = active_ && then <= 0;
     Lane share = 1.0;
-    State end = next;
-    if (any_of(parts)) {
-      share = select(parts, root(now, rate_now, then, rate_then), Lane(1.0));
-      end = contact_.advance(state_, share * c_.step);
-    }
+    if (any_of(parts)) share = select(parts, root(now, rate_now, then, rate_then), share);
+    const State end = any_of(parts) ? contact_.advance(state_, share * step) : next;
     state_ = choose(active_, end, state_);
-    duration_ = select(active_, duration_ + share * c_.step, duration_);
+    duration_ = select(active_, duration_ + share * step, duration_);
     active_ = active_ && !parts;
   }
 

@@ -22,7 +22,7 @@ namespace elrom::particle {
 
 struct PairSolverOptions {
   /// Steps of a contact's own duration; more where the step rules of contact_law.hpp ask for it.
-  int steps_per_contact = 40;
+  int steps_per_contact = 64;
   /// A pair that has not parted by then (e = 0: never) goes on as one body along the normal.
   int most_steps = 100000;
   int n_threads = 1;

@@ -1,0 +1,224 @@
+#include "elrom/particle/trees.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+
+namespace elrom::particle {
+namespace {
+
+constexpr std::size_t block_size = 256;  // samples; one tree and a block stay in the nearest cache
+constexpr std::size_t n_lanes = 32;      // samples that go down a tree side by side, to hide the loads
+static_assert(block_size % n_lanes == 0);
+
+[[noreturn]] void refuse(const std::string& where, std::size_t node, std::string what) {
+  throw InputError({.what = "node " + std::to_string(node) + " " + std::move(what), .where = where});
+}
+
+// Marks every child and root, each once, and gives the depth of every node.
+class Shape {
+ public:
+  Shape(const std::vector<TreeNode>& nodes, const std::string& where)
+      : nodes_(nodes), where_(where), depth_(nodes.size(), -1) {}
+
+  void add_root(std::int32_t root) {
+    if (root < 0 || static_cast<std::size_t>(root) >= nodes_.size())
+      throw InputError({.what = "a tree's root is no node",
+                        .where = where_,
+                        .found = std::to_string(root),
+                        .expected = "0 to " + std::to_string(nodes_.size()) + ", exclusive"});
+    claim(static_cast<std::size_t>(root), 0);
+  }
+
+  void walk(std::size_t n_inputs) {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const auto& node = nodes_[i];
+      if (depth_[i] < 0) refuse(where_, i, "belongs to no tree");
+      if (!std::isfinite(node.value)) refuse(where_, i, "has a value that is not finite");
+      if (node.feature < 0) continue;
+      if (static_cast<std::size_t>(node.feature) >= n_inputs)
+        refuse(where_, i,
+               "asks for input " + std::to_string(node.feature) + " of " + std::to_string(n_inputs));
+      const auto left = static_cast<std::int64_t>(node.left);
+      if (left <= static_cast<std::int64_t>(i) || left + 1 >= static_cast<std::int64_t>(nodes_.size()))
+        refuse(where_, i, "has its children at " + std::to_string(left) + ": not behind it, or no nodes");
+      claim(static_cast<std::size_t>(left), depth_[i] + 1);
+      claim(static_cast<std::size_t>(left) + 1, depth_[i] + 1);
+    }
+  }
+
+  [[nodiscard]] const std::vector<std::int32_t>& depth() const { return depth_; }
+
+ private:
+  void claim(std::size_t node, std::int32_t depth) {
+    if (depth_[node] >= 0) refuse(where_, node, "has two parents, or is a root with a parent");
+    depth_[node] = depth;
+  }
+
+  const std::vector<TreeNode>& nodes_;
+  const std::string& where_;
+  std::vector<std::int32_t> depth_;
+};
+
+std::vector<std::int32_t> numbers(const io::TensorFile& file, const std::string& name) {
+  const auto values = file.tensor(name, std::array{io::any_size}).i32();
+  return {values.begin(), values.end()};
+}
+
+}  // namespace
+
+Trees::Trees(std::size_t n_inputs, std::vector<TreeNode> nodes, std::vector<TreeGroup> outputs,
+             const std::string& where)
+    : n_inputs_(n_inputs), nodes_(std::move(nodes)), outputs_(std::move(outputs)) {
+  if (n_inputs_ == 0 || n_inputs_ > most_inputs)
+    throw InputError({.what = "number of inputs of trees",
+                      .where = where,
+                      .found = std::to_string(n_inputs_),
+                      .expected = "1 to " + std::to_string(most_inputs)});
+  if (nodes_.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    throw InputError({.what = "more nodes than can be numbered", .where = where});
+  if (outputs_.empty()) throw InputError({.what = "trees without an output", .where = where});
+  Shape shape(nodes_, where);
+  for (const auto& output : outputs_) {
+    if (output.roots.empty() || !std::isfinite(output.base))
+      throw InputError({.what = "an output without a tree, or whose base is not finite", .where = where});
+    for (const auto root : output.roots) shape.add_root(root);
+  }
+  shape.walk(n_inputs_);
+
+  walk_.depth.resize(nodes_.size());
+  std::vector<std::int32_t> root_of(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const auto& node = nodes_[i];
+    const auto self = static_cast<std::int32_t>(i);
+    if (shape.depth()[i] == 0) root_of[i] = self;
+    auto& deepest = walk_.depth[static_cast<std::size_t>(root_of[i])];
+    deepest = std::max(deepest, shape.depth()[i]);
+    const bool is_leaf = node.feature < 0;
+    walk_.input.push_back(is_leaf ? 0 : node.feature * static_cast<std::int32_t>(block_size));
+    walk_.left.push_back(is_leaf ? self : node.left);
+    walk_.threshold.push_back(is_leaf ? std::numeric_limits<float>::quiet_NaN() : node.value);
+    walk_.leaf.push_back(is_leaf ? node.value : 0.0F);
+    if (!is_leaf)
+      for (const int child : {0, 1}) root_of[static_cast<std::size_t>(node.left + child)] = root_of[i];
+  }
+}
+
+std::size_t Trees::n_trees() const {
+  std::size_t n = 0;
+  for (const auto& output : outputs_) n += output.roots.size();
+  return n;
+}
+
+// Loops over lanes are written so that the compiler turns them into gathers.
+void Trees::sum_trees(const TreeGroup& output, std::span<const float> block, std::span<double> sums) const {
+  const std::int32_t* input = walk_.input.data();
+  const std::int32_t* left = walk_.left.data();
+  const float* threshold = walk_.threshold.data();
+  const float* leaf = walk_.leaf.data();
+  std::ranges::fill(sums, output.base);
+  for (const auto root : output.roots) {
+    const auto depth = walk_.depth[static_cast<std::size_t>(root)];
+    for (std::size_t first = 0; first < sums.size(); first += n_lanes) {
+      const float* x = block.data() + first;
+      std::array<std::int32_t, n_lanes> at;
+      at.fill(root);
+      for (std::int32_t step = 0; step < depth; ++step)
+        for (std::size_t l = 0; l < n_lanes; ++l) {
+          const auto node = at[l];
+          const auto right = x[input[node] + static_cast<std::int32_t>(l)] >= threshold[node];
+          at[l] = left[node] + static_cast<std::int32_t>(right);
+        }
+      for (std::size_t l = 0; l < n_lanes; ++l) sums[first + l] += static_cast<double>(leaf[at[l]]);
+    }
+  }
+}
+
+void Trees::evaluate(const Eigen::Ref<const Table>& inputs, Eigen::Ref<Table> outputs) const {
+  check(static_cast<std::size_t>(inputs.cols()) == n_inputs_, "trees: number of inputs");
+  check(outputs.rows() == inputs.rows() && static_cast<std::size_t>(outputs.cols()) == outputs_.size(),
+        "trees: shape of the outputs");
+  const auto n = static_cast<std::size_t>(inputs.rows());
+  std::vector<float> block(n_inputs_ * block_size);
+  std::array<double, block_size> sums;
+  for (std::size_t first = 0; first < n; first += block_size) {
+    const auto count = std::min(block_size, n - first);
+    const auto row = static_cast<Eigen::Index>(first), rows = static_cast<Eigen::Index>(count);
+    for (std::size_t k = 0; k < n_inputs_; ++k)
+      Eigen::Map<Eigen::ArrayXf>(block.data() + k * block_size, rows) =
+          inputs.col(static_cast<Eigen::Index>(k)).segment(row, rows).cast<float>();
+    const auto in_lanes = (count + n_lanes - 1) / n_lanes * n_lanes;
+    for (std::size_t k = 0; k < outputs_.size(); ++k) {
+      sum_trees(outputs_[k], block, std::span(sums).first(in_lanes));
+      std::copy_n(sums.begin(), count, &outputs(row, static_cast<Eigen::Index>(k)));
+    }
+  }
+}
+
+void Trees::write(io::TensorFile& file, const std::string& prefix) const {
+  std::vector<std::int32_t> feature, left, roots, n_trees;
+  std::vector<float> value;
+  std::vector<double> base;
+  for (const auto& node : nodes_) {
+    feature.push_back(node.feature);
+    left.push_back(node.left);
+    value.push_back(node.value);
+  }
+  for (const auto& output : outputs_) {
+    roots.insert(roots.end(), output.roots.begin(), output.roots.end());
+    n_trees.push_back(static_cast<std::int32_t>(output.roots.size()));
+    base.push_back(output.base);
+  }
+  const auto set = [&](const char* name, const auto& values) {
+    using Value = typename std::decay_t<decltype(values)>::value_type;
+    file.set(prefix + name, io::Tensor::copy(std::span<const Value>(values), {values.size()}));
+  };
+  file.set_text(prefix + "/kind", kind());
+  file.set_text(prefix + "/inputs", std::to_string(n_inputs_));
+  set("/feature", feature);
+  set("/left", left);
+  set("/value", value);
+  set("/roots", roots);
+  set("/trees", n_trees);
+  set("/base", base);
+}
+
+std::unique_ptr<Trees> Trees::read(const io::TensorFile& file, const std::string& prefix) {
+  const std::string where = file.where() + ":" + prefix;
+  const auto inputs = base::to_double(file.text(prefix + "/inputs"));
+  if (!inputs || !(*inputs >= 1) || *inputs > most_inputs || *inputs != std::floor(*inputs))
+    throw InputError({.what = "number of inputs of trees",
+                      .where = where,
+                      .found = "'" + file.text(prefix + "/inputs") + "'",
+                      .expected = "1 to " + std::to_string(most_inputs)});
+  const auto feature = file.tensor(prefix + "/feature", std::array{io::any_size}).i32();
+  const std::array same{feature.size()};
+  const auto left = file.tensor(prefix + "/left", same).i32();
+  const auto value = file.tensor(prefix + "/value", same).f32();
+  const auto n_trees = numbers(file, prefix + "/trees"), roots = numbers(file, prefix + "/roots");
+  const auto base = file.tensor(prefix + "/base", std::array{n_trees.size()}).f64();
+
+  std::vector<TreeNode> nodes(feature.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = {feature[i], left[i], value[i]};
+  std::vector<TreeGroup> outputs;
+  std::size_t used = 0;
+  for (std::size_t k = 0; k < n_trees.size(); ++k) {
+    const bool fits = n_trees[k] > 0 && static_cast<std::size_t>(n_trees[k]) <= roots.size() - used;
+    if (!fits)
+      throw InputError({.what = "more trees than roots, or none of an output",
+                        .where = where,
+                        .found = std::to_string(n_trees[k])});
+    const auto begin = roots.begin() + static_cast<std::ptrdiff_t>(used);
+    outputs.push_back({base[k], {begin, begin + n_trees[k]}});
+    used += static_cast<std::size_t>(n_trees[k]);
+  }
+  if (used != roots.size()) throw InputError({.what = "roots of no output's tree", .where = where});
+  return std::make_unique<Trees>(static_cast<std::size_t>(*inputs), std::move(nodes), std::move(outputs),
+                                 where);
+}
+
+}  // namespace elrom::particle
