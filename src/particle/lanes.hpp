@@ -16,6 +16,7 @@ using std::experimental::any_of;
 using std::experimental::max;
 using std::experimental::min;
 using std::experimental::none_of;
+using std::experimental::reduce;
 using std::experimental::sqrt;
 
 inline Lane select(const Mask& mask, Lane yes, const Lane& no) {

@@ -5,6 +5,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/particle/chebyshev.hpp"
 #include "elrom/particle/trees.hpp"
 
 namespace elrom::particle {
@@ -22,7 +23,8 @@ struct RegressorKind {
   const char* name;
   Read read;
 };
-constexpr std::array regressor_kinds{RegressorKind{"trees", read_as<Trees>}};
+constexpr std::array regressor_kinds{RegressorKind{"trees", read_as<Trees>},
+                                     RegressorKind{"chebyshev", read_as<Chebyshev>}};
 
 }  // namespace
 

@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
 #include "elrom/base/error.hpp"
 #include "proposals.hpp"
 #include "support/recording_log.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::networks {
 namespace {
@@ -118,6 +121,66 @@ TEST_P(EveryAlgorithm, KilledSearchResumesToTheSameWinnerAndRepeatsNoTrial) {
 
 INSTANTIATE_TEST_SUITE_P(Search, EveryAlgorithm,
                          ::testing::Values("direct", "sobol_bobyqa", "sbplx", "crs2", "random"));
+
+// What the search knows of networks is their struct; any other one is searched and kept the same way.
+struct Boosting {
+  int n_rounds = 10;
+  double learning_rate = 0.3;
+  bool operator==(const Boosting&) const = default;
+  static constexpr std::array names{"n_rounds", "learning_rate"};
+  static constexpr const char* trial_table = "boosting_trials";
+};
+
+SearchResultOf<Boosting> search_boosting(TrialStoreOf<Boosting>* store, int& calls, int kill_at = -1) {
+  const SearchSpaceOf<Boosting> space(
+      {}, {{"learning_rate", log_bins({0.01, 1}, 10)}, {"n_rounds", whole_bins({5, 54})}});
+  const auto evaluate = [&](const Boosting& h, base::Seed, TrainingMonitor* monitor) {
+    TrialOutcome outcome;
+    for (int round = 1; round <= h.n_rounds && !outcome.pruned; ++round) {
+      outcome.epochs = round;
+      outcome.validation_mse = std::abs(std::log10(h.learning_rate / 0.1)) + 1.0 / round;
+      outcome.pruned = !monitor->keep_going(round, outcome.validation_mse);
+    }
+    if (++calls == kill_at) throw Interrupted("killed");
+    return outcome;
+  };
+  return search(evaluate, settings_for("sobol_bobyqa"), space, {.digest = "d", .store = store});
+}
+
+TEST(Search, AnyStructOfHyperparametersIsSearchedPrunedKeptAndResumed) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "search.sqlite";
+  int whole = 0, killed = 0, resumed = 0;
+  const auto expected = search_boosting(nullptr, whole);
+  {
+    TrialStore networks(path);  // of networks, in the same file
+    networks.add("d", "pressure", "k", {.value = 1});
+    TrialStoreOf<Boosting> store(path);
+    EXPECT_THROW((void)search_boosting(&store, killed, 17), Interrupted);
+  }
+  TrialStoreOf<Boosting> store(path);
+
+  const auto result = search_boosting(&store, resumed);
+
+  EXPECT_EQ(result.best, expected.best);
+  EXPECT_EQ(result.n_replayed, 16U);
+  EXPECT_EQ(resumed, whole - 16);
+  EXPECT_NEAR(std::log10(result.best.learning_rate), -1, 0.15);
+  EXPECT_GT(result.best.n_rounds, 20);
+  EXPECT_TRUE(std::ranges::any_of(result.trials, &TrialOf<Boosting>::pruned));
+  ASSERT_EQ(store.searches().size(), 1U);
+  EXPECT_EQ(store.searches()[0].trials.size(), result.trials.size());
+  EXPECT_EQ(TrialStore(path).searches().at(0).trials.size(), 1U) << "tables of their own";
+}
+
+TEST(SearchSpace, OnlyNumbersOfTheStructAreSearched) {
+  const auto space = [](const char* name) {
+    return SearchSpaceOf<Hyperparameters>({}, {{name, whole_bins({1, 3})}});
+  };
+  EXPECT_EQ(space("n_layers").decode(std::vector{1.0}).n_layers, 3);
+  EXPECT_THROW(space("n_trees"), std::logic_error);
+  EXPECT_THROW(space("activation"), std::logic_error);
+}
 
 TEST(Search, PruningSavesEpochsAndNeverTheFirstEight) {
   FakeTrainer pruned, whole;

@@ -23,4 +23,17 @@ void read_text(std::string_view text, int& value) {
 
 void read_text(std::string_view text, model::Activation& value) { value = model::activation_of(text); }
 
+std::string key_of(const NamedValues& values) {
+  std::vector<std::string> parts;
+  for (const auto& named : values) {
+    if (const auto* text = std::get_if<std::string>(&named.value))
+      parts.push_back(*text);
+    else if (const auto* whole = std::get_if<int>(&named.value))
+      parts.push_back(text_of(*whole));
+    else
+      parts.push_back(text_of(std::get<double>(named.value)));
+  }
+  return base::join(parts, " ");
+}
+
 }  // namespace elrom::networks

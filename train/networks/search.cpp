@@ -14,6 +14,8 @@
 namespace elrom::networks {
 namespace {
 
+using Row = TrialOf<NamedValues>;
+
 constexpr int eta = 3;
 constexpr std::size_t never_pruned = 8;  // the first trials show what can be reached
 
@@ -23,8 +25,11 @@ double finite(double value) {
 
 // A diverged trial is worse than every other, and the worse the higher its rate: a local algorithm that
 // begins among diverging rates finds its way out.
-double diverged_value(const Hyperparameters& hyperparameters) {
-  return worst_value * (0.5 + 0.5 * hyperparameters.learning_rate / (1 + hyperparameters.learning_rate));
+double diverged_value(const NamedValues& hyperparameters) {
+  const auto named = std::ranges::find(hyperparameters, "learning_rate", &NamedValue::name);
+  if (named == hyperparameters.end()) return worst_value;
+  const double rate = std::get<double>(named->value);
+  return worst_value * (0.5 + 0.5 * rate / (1 + rate));
 }
 
 // Asynchronous successive halving: a trial goes on at a rung while it is among the best third seen there.
@@ -79,19 +84,13 @@ class RungMonitor final : public TrainingMonitor {
 
 class Searcher {
  public:
-  Searcher(const Evaluate& evaluate, const SearchSettings& settings, const SearchSpace& space,
-           const SearchContext& context)
-      : evaluate_(evaluate),
-        settings_(settings),
-        space_(space),
-        context_(context),
-        halving_(settings.max_epochs) {}
+  explicit Searcher(const ValueSearch& search) : search_(search), halving_(search.max_epochs) {}
 
-  SearchResult run() {
-    const auto n_trials = static_cast<std::size_t>(settings_.trials);
+  SearchResultOf<NamedValues> run() {
+    const auto n_trials = static_cast<std::size_t>(search_.trials);
     progress();
-    propose(settings_.algorithm, space_.n_dimensions(), space_.initial_step(), n_trials,
-            context_.seed.derive("propose"), [this](std::span<const double> point) { return ask(point); });
+    propose(search_.algorithm, search_.space->n_dimensions(), search_.space->initial_step(), n_trials,
+            search_.seed.derive("propose"), [this](std::span<const double> point) { return ask(point); });
     confirm();
     tell_lost();
     return std::move(result_);
@@ -99,70 +98,70 @@ class Searcher {
 
  private:
   double ask(std::span<const double> point) {
-    if (context_.stop.stop_requested()) throw Interrupted("stopped on request");
-    const auto hyperparameters = space_.decode(point);
-    const auto key = SearchSpace::key(hyperparameters);
+    if (search_.stop.stop_requested()) throw Interrupted("stopped on request");
+    const auto hyperparameters = search_.space->decode(point);
+    const auto key = key_of(hyperparameters);
     if (const auto known = values_.find(key); known != values_.end()) return known->second;
-    if (values_.size() >= static_cast<std::size_t>(settings_.trials)) throw SearchEnded{};
+    if (values_.size() >= static_cast<std::size_t>(search_.trials)) throw SearchEnded{};
     const auto trial = run_trial(hyperparameters, key, 0);
     values_.emplace(key, trial.value);
     halving_.record(trial.rungs);
     result_.trials.push_back(trial);
     if (better_than_incumbent(trial)) incumbent_ = trial.value;
     progress();
-    if (values_.size() >= static_cast<std::size_t>(settings_.trials)) throw SearchEnded{};
+    if (values_.size() >= static_cast<std::size_t>(search_.trials)) throw SearchEnded{};
     return trial.value;
   }
 
-  bool better_than_incumbent(const Trial& trial) const { return !trial.pruned && trial.value < incumbent_; }
+  bool better_than_incumbent(const Row& trial) const { return !trial.pruned && trial.value < incumbent_; }
 
-  Trial run_trial(const Hyperparameters& hyperparameters, const std::string& key, int i_seed) {
-    if (context_.store != nullptr) {
-      if (auto stored = context_.store->find(context_.digest, key, i_seed)) {
+  Row run_trial(const NamedValues& hyperparameters, const std::string& key, int i_seed) {
+    if (search_.store != nullptr) {
+      if (auto stored = search_.store->find(search_.digest, key, i_seed)) {
         ++result_.n_replayed;
         return *stored;
       }
     }
     const auto begin = std::chrono::steady_clock::now();
-    RungMonitor monitor(halving_, values_.size(), settings_.prune && i_seed == 0);
-    const auto seed = context_.seed.derive("trial").derive(key).derive(static_cast<std::uint64_t>(i_seed));
-    const auto trained = evaluate_(hyperparameters, seed, &monitor);
-    Trial trial{.hyperparameters = hyperparameters,
-                .i_seed = i_seed,
-                .value = finite(trained.validation_mse),
-                .epochs = trained.epochs,
-                .pruned = trained.pruned,
-                .diverged = trained.diverged,
-                .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
-                .rungs = monitor.reached()};
+    RungMonitor monitor(halving_, values_.size(), search_.prune && i_seed == 0);
+    const auto seed = search_.seed.derive("trial").derive(key).derive(static_cast<std::uint64_t>(i_seed));
+    const auto trained = search_.evaluate(hyperparameters, seed, &monitor);
+    Row trial{.hyperparameters = hyperparameters,
+              .i_seed = i_seed,
+              .value = finite(trained.validation_mse),
+              .epochs = trained.epochs,
+              .pruned = trained.pruned,
+              .diverged = trained.diverged,
+              .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+              .rungs = monitor.reached()};
     if (trained.diverged)
       trial.value = diverged_value(hyperparameters);
     else if (trained.pruned)
       trial.value = monitor.best();
-    if (context_.store != nullptr) context_.store->add(context_.digest, context_.name, key, trial);
+    if (search_.store != nullptr) search_.store->add(search_.digest, search_.name, key, trial);
     return trial;
   }
 
   void progress() {
-    context_.log->progress({"search " + context_.name, static_cast<std::int64_t>(values_.size()),
-                            settings_.trials, "trials",
-                            incumbent_ < HUGE_VAL ? base::rounded(incumbent_) : std::string()});
+    search_.log->progress({"search " + search_.name, static_cast<std::int64_t>(values_.size()),
+                           search_.trials, "trials",
+                           incumbent_ < HUGE_VAL ? base::rounded(incumbent_) : std::string()});
   }
 
   void tell_lost() const {
-    const auto n_lost = std::ranges::count_if(result_.trials, &Trial::diverged);
+    const auto n_lost = std::ranges::count_if(result_.trials, &Row::diverged);
     if (n_lost == 0) return;
-    context_.log->info(fmt::format("search {}: {} of {} trainings diverged and are lost", context_.name,
-                                   n_lost, result_.trials.size()));
+    search_.log->info(fmt::format("search {}: {} of {} trainings diverged and are lost", search_.name, n_lost,
+                                  result_.trials.size()));
   }
 
   // Trials that ended by themselves, best first; a diverged one only when there is no other.
-  std::vector<Trial> candidates() const {
-    std::vector<Trial> sorted;
+  std::vector<Row> candidates() const {
+    std::vector<Row> sorted;
     for (const auto& trial : result_.trials)
       if (!trial.pruned) sorted.push_back(trial);
     if (sorted.empty()) sorted = result_.trials;
-    std::ranges::stable_sort(sorted, {}, &Trial::value);
+    std::ranges::stable_sort(sorted, {}, &Row::value);
     return sorted;
   }
 
@@ -171,37 +170,31 @@ class Searcher {
     check(!sorted.empty(), "search: at least one trial");
     result_.best = sorted.front().hyperparameters;
     result_.validation_mse = sorted.front().value;
-    if (settings_.confirm < 2 || sorted.size() < 2) return;
-    sorted.resize(std::min(sorted.size(), static_cast<std::size_t>(settings_.confirm)));
+    if (search_.confirm < 2 || sorted.size() < 2) return;
+    sorted.resize(std::min(sorted.size(), static_cast<std::size_t>(search_.confirm)));
     double best = HUGE_VAL;
     for (const auto& trial : sorted) {
       double sum = 0;
-      for (int i_seed = 1; i_seed <= settings_.confirm_seeds; ++i_seed) {
-        if (context_.stop.stop_requested()) throw Interrupted("stopped on request");
-        const auto again = run_trial(trial.hyperparameters, SearchSpace::key(trial.hyperparameters), i_seed);
+      for (int i_seed = 1; i_seed <= search_.confirm_seeds; ++i_seed) {
+        if (search_.stop.stop_requested()) throw Interrupted("stopped on request");
+        const auto again = run_trial(trial.hyperparameters, key_of(trial.hyperparameters), i_seed);
         result_.trials.push_back(again);
         sum += again.value;
       }
-      const double mean = sum / settings_.confirm_seeds;
+      const double mean = sum / search_.confirm_seeds;
       if (mean < best) best = mean, result_.best = trial.hyperparameters, result_.validation_mse = mean;
     }
   }
 
-  const Evaluate& evaluate_;
-  const SearchSettings& settings_;
-  const SearchSpace& space_;
-  const SearchContext& context_;
+  const ValueSearch& search_;
   Halving halving_;
   std::map<std::string, double> values_;  // by key: the memo
   double incumbent_ = HUGE_VAL;
-  SearchResult result_;
+  SearchResultOf<NamedValues> result_;
 };
 
 }  // namespace
 
-SearchResult search(const Evaluate& evaluate, const SearchSettings& settings, const SearchSpace& space,
-                    const SearchContext& context) {
-  return Searcher(evaluate, settings, space, context).run();
-}
+SearchResultOf<NamedValues> ValueSearch::run() const { return Searcher(*this).run(); }
 
 }  // namespace elrom::networks

@@ -1,16 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/networks/search.hpp"
 
 namespace elrom::networks {
-namespace {
-
-// From low to high, a fixed number of bins a decade, each
-// value rounded to three digits so that its text is exact.
 std::vector<double> log_bins(const std::vector<double>& range, double bins_a_decade) {
   const double decades = std::log10(range[1] / range[0]);
   const auto n = static_cast<std::size_t>(std::round(decades * bins_a_decade)) + 1;
@@ -22,7 +17,6 @@ std::vector<double> log_bins(const std::vector<double>& range, double bins_a_dec
   return values;
 }
 
-// low, then steps of about 1.41 rounded to whole numbers (multiples of 8 above 16), high.
 std::vector<double> size_bins(const std::vector<double>& range, double factor) {
   std::vector<double> values;
   for (double value = range[0]; value < range[1] * 0.99; value *= factor) {
@@ -50,58 +44,58 @@ std::vector<double> even_bins(const std::vector<double>& range, std::size_t n) {
   return values;
 }
 
-// Values of each hyperparameter that is searched; the others stay what they are.
-std::map<std::string_view, std::vector<double>> searched(const SearchSettings& settings) {
-  std::map<std::string_view, std::vector<double>> values{
-      {"learning_rate", log_bins(settings.learning_rate, 16)},
-      {"n_layers", whole_bins(settings.n_layers)},
-      {"n_units", size_bins(settings.n_units, std::sqrt(2.0))},
-      {"batch_size", size_bins(settings.batch_size, 2.0)}};
+namespace {
+
+std::vector<ValueSpace::Axis> searched(const SearchSettings& settings) {
+  std::vector<ValueSpace::Axis> axes{{"learning_rate", log_bins(settings.learning_rate, 16)},
+                                     {"n_layers", whole_bins(settings.n_layers)},
+                                     {"n_units", size_bins(settings.n_units, std::sqrt(2.0))},
+                                     {"batch_size", size_bins(settings.batch_size, 2.0)}};
   if (settings.regularise) {
-    values["weight_decay"] = log_bins(settings.weight_decay, 3);
-    values["dropout"] = even_bins(settings.dropout, 7);
+    axes.push_back({"weight_decay", log_bins(settings.weight_decay, 3)});
+    axes.push_back({"dropout", even_bins(settings.dropout, 7)});
   }
-  return values;
+  return axes;
 }
 
 }  // namespace
 
-SearchSpace::SearchSpace(const SearchSettings& settings, model::Activation activation)
-    : activation_(activation) {
-  auto values = searched(settings);
-  for (const auto* name : hyperparameter_names)
-    if (const auto own = values.find(name); own != values.end())
-      axes_.push_back({name, std::move(own->second)});
-  check(axes_.size() == values.size(), "search space: what is searched is a hyperparameter");
+ValueSpace::ValueSpace(NamedValues fixed, std::vector<Axis> axes) : fixed_(std::move(fixed)) {
+  for (std::size_t i = 0; i < fixed_.size(); ++i) {
+    const auto own = std::ranges::find(axes, fixed_[i].name, &Axis::name);
+    if (own == axes.end()) continue;
+    check(!own->values.empty() && !std::holds_alternative<std::string>(fixed_[i].value),
+          "search space: values of a number");
+    axes_.push_back(std::move(*own));
+    places_.push_back(i);
+  }
+  check(axes_.size() == axes.size(), "search space: what is searched is a hyperparameter");
 }
 
-Hyperparameters SearchSpace::decode(std::span<const double> point) const {
-  Hyperparameters h;
-  h.activation = activation_;
-  std::size_t i = 0;
-  for_each_hyperparameter(h, [&](std::string_view name, auto& value) {
-    if (i == axes_.size() || axes_[i].name != name) return;
+NamedValues ValueSpace::decode(std::span<const double> point) const {
+  auto values = fixed_;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
     const auto n = axes_[i].values.size();
     const double x = std::isfinite(point[i]) ? std::clamp(point[i], 0.0, 1.0) : 0.5;
     const double chosen =
         axes_[i].values[std::min(n - 1, static_cast<std::size_t>(x * static_cast<double>(n)))];
-    value = static_cast<std::remove_reference_t<decltype(value)>>(chosen);
-    ++i;
-  });
-  return h;
+    auto& value = values[places_[i]].value;
+    if (std::holds_alternative<int>(value))
+      value = static_cast<int>(chosen);
+    else
+      value = chosen;
+  }
+  return values;
 }
 
-std::string SearchSpace::key(const Hyperparameters& h) {
-  std::vector<std::string> parts;
-  for_each_hyperparameter(h, [&](std::string_view, const auto& value) { parts.push_back(text_of(value)); });
-  return base::join(parts, " ");
-}
-
-std::vector<double> SearchSpace::initial_step() const {
+std::vector<double> ValueSpace::initial_step() const {
   std::vector<double> step;
   for (const auto& axis : axes_)
     step.push_back(std::clamp(1.0 / static_cast<double>(axis.values.size()), 0.2, 0.5));
   return step;
 }
+
+SearchSpace::SearchSpace(const SearchSettings& settings, model::Activation activation)
+    : SearchSpaceOf({.activation = activation}, searched(settings)) {}
 
 }  // namespace elrom::networks

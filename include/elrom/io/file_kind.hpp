@@ -43,10 +43,11 @@ inline constexpr FileKind collisions{
     "elrom-collisions", {1, 0}, "make them again with elrom-data collisions"};
 inline constexpr FileKind collision_summary{
     "elrom-collision-summary", {1, 0}, "make it again with elrom-data collisions"};
+inline constexpr FileKind collision{"elrom-collision", {1, 0}, "train again with elrom-train collisions"};
 
-inline constexpr std::array all{mesh,     snapshots,      bundle, prediction, manifest,         check,
-                                split,    timing,         trials, stage,      checkpoint,       retrain,
-                                accuracy, learning_curve, cost,   collisions, collision_summary};
+inline constexpr std::array all{mesh,     snapshots,      bundle, prediction, manifest,          check,
+                                split,    timing,         trials, stage,      checkpoint,        retrain,
+                                accuracy, learning_curve, cost,   collisions, collision_summary, collision};
 }  // namespace kinds
 
 /// What a file says of itself; nothing where it says nothing.

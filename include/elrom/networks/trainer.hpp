@@ -36,6 +36,14 @@ class TrainingMonitor {
   virtual bool keep_going(int epoch, double validation_mse) = 0;
 };
 
+/// What the search learns of a training.
+struct TrialOutcome {
+  double validation_mse = 0;
+  int epochs = 0;
+  bool pruned = false;
+  bool diverged = false;
+};
+
 struct TrainingResult {
   model::Network network;     ///< the weights of the best epoch; empty when diverged
   double validation_mse = 0;  ///< of the best epoch, standardised units
@@ -46,6 +54,8 @@ struct TrainingResult {
                           ///< largest finite number)
   /// After a first such loss it was begun again at a tenth of the rate: tell the user
   bool backed_off = false;
+
+  operator TrialOutcome() const { return {validation_mse, epochs, pruned, diverged}; }
 };
 
 /// Warns when a training diverged: it is lost, or was begun again at a tenth of its rate.

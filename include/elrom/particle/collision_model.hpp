@@ -13,6 +13,7 @@
 #include <string>
 
 #include "elrom/base/enum_names.hpp"
+#include "elrom/io/tensor_file.hpp"
 #include "elrom/particle/contact_law.hpp"
 #include "elrom/particle/pairs.hpp"
 #include "elrom/particle/protocol.hpp"
@@ -42,9 +43,11 @@ class CollisionModel {
   [[nodiscard]] virtual std::string text() const = 0;
   /// Pairs that part, or whose numbers are not finite, get none. @param impulses of the pairs' size, overwritten
   virtual void impulses(const Pairs& pairs, Impulses& impulses) const = 0;
+  /// Its tensors; the bundle adds law and protocol.
+  virtual void write(io::TensorFile& file) const = 0;
 };
 
-/// The motion that these impulses leave. Spins change only where `with_spin`.
+/// The motion that these impulses leave.
 [[nodiscard]] Motion apply(const Pairs& pairs, const Impulses& impulses);
 
 /// A model with what it was learned from: the file `collision.elrom` (data/FORMATS.md, kind "elrom-collision").

@@ -50,19 +50,19 @@ class Trees final : public Regressor {
   [[nodiscard]] static std::unique_ptr<Trees> read(const io::TensorFile& file, const std::string& prefix);
 
  private:
-  // What evaluation reads. A leaf sends every sample to itself, so that all samples of a tree take as many
-  // steps as its deepest leaf asks for, without a branch.
-  struct Walk {
-    std::vector<std::int32_t> input, left;  // input: where the feature's values begin in a block
-    std::vector<float> threshold, leaf;
-    std::vector<std::int32_t> depth;  // of the tree at each root, 0 elsewhere
+  // What evaluation reads of a node. A leaf sends every sample to itself, so that all samples of a tree take as
+  // many steps as its deepest leaf asks for, without a branch.
+  struct Step {
+    std::int32_t input, left;  // input: where the feature's values begin in a block
+    float threshold, leaf;
   };
   void sum_trees(const TreeGroup& output, std::span<const float> block, std::span<double> sums) const;
 
   std::size_t n_inputs_;
   std::vector<TreeNode> nodes_;
   std::vector<TreeGroup> outputs_;
-  Walk walk_;
+  std::vector<Step> steps_;           // one a node
+  std::vector<std::int32_t> depths_;  // of the tree at each root; 0 at other nodes
 };
 
 }  // namespace elrom::particle
