@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/error.hpp"
+#include "elrom/particle/document_model.hpp"
 #include "elrom/particle/exact_model.hpp"
 #include "elrom/particle/frame_model.hpp"
 
@@ -85,7 +86,7 @@ auto from_text(const io::TensorFile& file, const char* key, const Read& read) {
 std::shared_ptr<const CollisionModel> model_of(const io::TensorFile& file, const ContactLaw& law) {
   switch (surrogate_names.value(file.text("surrogate"))) {
     case SurrogateKind::document:
-      throw InputError("not yet");
+      return DocumentModel::read(file);
     case SurrogateKind::frame:
       return FrameModel::read(file, law);
     case SurrogateKind::exact:

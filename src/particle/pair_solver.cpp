@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t block_size = 512;  // pairs a thread takes at a time
 
-// Of the relative motion: see the header.
+// Of the relative motion: see the header. `place` counts from where the contact begins, so that an overlap of 1e-16 m
+// keeps its digits.
 struct State {
   LaneVector place, velocity, spin, spring;
 
@@ -34,6 +35,8 @@ constexpr double shortest_step = 1.0 / 128;  // of a usual one
 struct Constants {
   Lane reduced_mass, distance, stiffness, damping, tangential_stiffness, tangential_damping, friction, step;
   Lane diameter_1, diameter_2, mass_1, mass_2;
+  LaneVector start;  // centre of 2 from that of 1, m
+  Lane start_gap;    // R^2 - |start|^2
 };
 
 // Where a cubic through both ends of a step, with the rates given there, falls to zero; as a share of the step.
@@ -56,11 +59,17 @@ class Contact {
   explicit Contact(const Constants& constants) : c_(constants), per_mass_(1 / constants.reduced_mass) {}
 
   [[nodiscard]] Lane overlap(const State& state) const {
-    return c_.distance - sqrt(dot(state.place, state.place));
+    const LaneVector place = c_.start + state.place;
+    return overlap_at(state, sqrt(dot(place, place)));
   }
   // Of the overlap.
-  [[nodiscard]] static Lane rate(const State& state) {
-    return -dot(state.place, state.velocity) / sqrt(dot(state.place, state.place));
+  [[nodiscard]] Lane rate(const State& state) const {
+    const LaneVector place = c_.start + state.place;
+    return -dot(place, state.velocity) / sqrt(dot(place, place));
+  }
+  [[nodiscard]] LaneVector normal(const State& state) const {
+    const LaneVector place = c_.start + state.place;
+    return (1 / sqrt(dot(place, place))) * place;
   }
 
   [[nodiscard]] State advance(const State& state, const Lane& step) const {
@@ -82,11 +91,18 @@ class Contact {
     LaneVector direction;
   };
 
+  // R - distance, without the difference of nearly equal numbers.
+  [[nodiscard]] Lane overlap_at(const State& state, const Lane& distance) const {
+    const Lane gap = c_.start_gap - 2 * dot(c_.start, state.place) - dot(state.place, state.place);
+    return gap / (c_.distance + distance);
+  }
+
   [[nodiscard]] Forces forces(const State& state) const {
     Forces f;
-    f.distance = sqrt(dot(state.place, state.place));
-    f.direction = (1 / f.distance) * state.place;
-    const Lane overlap = max(c_.distance - f.distance, Lane(0.0));
+    const LaneVector place = c_.start + state.place;
+    f.distance = sqrt(dot(place, place));
+    f.direction = (1 / f.distance) * place;
+    const Lane overlap = max(overlap_at(state, f.distance), Lane(0.0));
     const Lane closing = -dot(f.direction, state.velocity);
     if constexpr (law == LawKind::linear) {
       f.normal = c_.stiffness * overlap + c_.damping * closing;
@@ -157,13 +173,15 @@ class Group {
       : c_(constants), contact_(c_), mass_share_1_(c_.reduced_mass / c_.mass_1) {
     const auto velocity_1 = load_vector(pairs.before.velocity_1, first);
     const auto velocity_2 = load_vector(pairs.before.velocity_2, first);
-    begin_.place = (c_.distance - load(pairs.overlap, first)) * load_vector(pairs.normal, first);
+    const Lane overlap = load(pairs.overlap, first);
+    c_.start = (c_.distance - overlap) * load_vector(pairs.normal, first);
+    c_.start_gap = overlap * (2 * c_.distance - overlap);
+    begin_.place = {0.0, 0.0, 0.0};
     begin_.velocity = velocity_2 - velocity_1;
     begin_.spin = (0.5 * c_.diameter_1) * load_vector(pairs.before.spin_1, first) +
                   (0.5 * c_.diameter_2) * load_vector(pairs.before.spin_2, first);
     begin_.spring = {0.0, 0.0, 0.0};
     state_ = begin_;
-    const Lane overlap = load(pairs.overlap, first);
     const Mask there =
         Lane([](auto lane) { return static_cast<double>(lane); }) < static_cast<double>(pairs.size() - first);
     active_ = there && (overlap > 0 || dot(load_vector(pairs.normal, first), begin_.velocity) < 0);
@@ -183,7 +201,7 @@ class Group {
 
   // Pairs that never parted lose their normal velocity.
   int stop_rest() {
-    const LaneVector normal = (1 / sqrt(dot(state_.place, state_.place))) * state_.place;
+    const LaneVector normal = contact_.normal(state_);
     state_.velocity =
         select(active_, state_.velocity - dot(state_.velocity, normal) * normal, state_.velocity);
     return std::experimental::popcount(active_);

@@ -1,8 +1,11 @@
 #pragma once
 // Pairs to try, and the oracles that several tests of collisions share.
 
+#include <gmock/gmock.h>
+
 #include <Eigen/Geometry>
 
+#include "elrom/base/error.hpp"
 #include "elrom/particle/pairs.hpp"
 
 namespace elrom::particle::test {
@@ -21,6 +24,17 @@ inline Pairs one_pair(const Vector& velocity_1, const Vector& velocity_2, const 
   pairs.density_1 = density_1;
   pairs.density_2 = density_2;
   return pairs;
+}
+
+/// The call throws a UsageError that says so.
+template <class Call>
+void expect_refused(const Call& call, const std::string& text) {
+  try {
+    call();
+    ADD_FAILURE() << "not refused: " << text;
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(text));
+  }
 }
 
 inline Vector row(const Components& values, Eigen::Index i = 0) { return values.row(i).matrix().transpose(); }

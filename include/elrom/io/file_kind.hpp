@@ -44,10 +44,28 @@ inline constexpr FileKind collisions{
 inline constexpr FileKind collision_summary{
     "elrom-collision-summary", {1, 0}, "make it again with elrom-data collisions"};
 inline constexpr FileKind collision{"elrom-collision", {1, 0}, "train again with elrom-train collisions"};
+inline constexpr FileKind collision_report{
+    "elrom-collision-report", {1, 0}, "report again with elrom-report collisions"};
 
-inline constexpr std::array all{mesh,     snapshots,      bundle, prediction, manifest,          check,
-                                split,    timing,         trials, stage,      checkpoint,        retrain,
-                                accuracy, learning_curve, cost,   collisions, collision_summary, collision};
+inline constexpr std::array all{mesh,
+                                snapshots,
+                                bundle,
+                                prediction,
+                                manifest,
+                                check,
+                                split,
+                                timing,
+                                trials,
+                                stage,
+                                checkpoint,
+                                retrain,
+                                accuracy,
+                                learning_curve,
+                                cost,
+                                collisions,
+                                collision_summary,
+                                collision,
+                                collision_report};
 }  // namespace kinds
 
 /// What a file says of itself; nothing where it says nothing.

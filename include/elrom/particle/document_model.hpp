@@ -38,7 +38,7 @@ class DocumentModel final : public CollisionModel {
   [[nodiscard]] Table velocities_after(const Table& velocities) const;
 
   /// Tensors under "document/...".
-  void write(io::TensorFile& file) const;
+  void write(io::TensorFile& file) const override;
   [[nodiscard]] static std::unique_ptr<DocumentModel> read(const io::TensorFile& file);
 
  private:

@@ -1,0 +1,35 @@
+#pragma once
+// How far a collision model is from the pairs of a set, and what it does to momentum and energy.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "elrom/particle/collision_model.hpp"
+#include "elrom/particle/collision_set.hpp"
+
+namespace elrom::particle {
+
+/// Of the pairs first to first + count of a set.
+struct CollisionErrors {
+  std::size_t n_pairs = 0;
+  std::array<double, 3> mae{};  ///< of u, v, w of both spheres, m/s
+  double mae_velocity = 0;      ///< mean of the three
+  double mae_surface = 0;       ///< of r w, components of both spheres, m/s
+  double greatest = 0;          ///< |error| of a velocity component, m/s
+  /// |error of the velocity| / |velocity after|, of all spheres: 10, 50, 90, 99 %.
+  std::array<double, 4> relative{};
+  double momentum_error = 0;       ///< greatest |change| / (|p1| + |p2|) of a pair
+  double mean_momentum_error = 0;  ///< mean of the same
+  double energy_gain = 0;    ///< greatest (energy after - before) / before of a pair by the model; at least 0
+  double gaining_share = 0;  ///< of pairs that the model gives energy
+  double energy_lost = 0;    ///< share of the energy of all pairs: by the model
+  double energy_lost_truth = 0;  ///< by the set
+};
+
+[[nodiscard]] CollisionErrors errors_of(const CollisionModel& model, const CollisionSet& set,
+                                        std::size_t first, std::size_t count);
+/// {"mae_m_per_s": [u, v, w], ...}
+[[nodiscard]] std::string to_json(const CollisionErrors& errors);
+
+}  // namespace elrom::particle
