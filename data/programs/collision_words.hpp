@@ -1,5 +1,5 @@
 #pragma once
-// Sets of collisions and collision models as JSON and in words, for `elrom-data inspect` and `elrom-data collisions`.
+// Sets of collisions and collision models as JSON and in words, for inspect and collisions of elrom-data.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -122,7 +122,7 @@ class TinyDisk {
 
 namespace {
 
-/// Import, training, prediction and collisions under one kind of failure: old or new state, no death by a signal.
+/// Import, training and prediction under one kind of failure: old or new state, no death by a signal.
 void fail_programs(const Failure& failure, const Workshop& shop, const fs::path& folder, Tally& tally) {
   const auto store = folder / "store.h5", old_store = folder / "old.h5";
   fail_every_call(
