@@ -85,17 +85,15 @@ std::string kinds(const Json& d) {
                           CollisionSummary::grazing_from));
 }
 
-std::string settings(const Json& d) {
+/// The law, and what the pairs were drawn from.
+std::string drawn(const Json& d) {
   const auto& protocol = d["protocol"];
+  const auto& tangential = d["law"]["tangential_restitution"];
   auto text = fmt::format(
-      "{} collisions of two spheres, protocol {}, seed {}\n"
       "  contact law: {}{}\n"
       "  drawn: speeds {}, diameters {} and {}, densities {} and {} kg/m3, spins {}\n",
-      d["pairs"].get<std::size_t>(), protocol["name"].get<std::string>(), d["seed"].get<std::uint64_t>(),
       d["law"]["text"].get<std::string>(),
-      d["law"]["tangential_restitution"].is_null()
-          ? ""
-          : ", tangential e " + shown(d["law"]["tangential_restitution"], "1"),
+      tangential.is_null() ? "" : ", tangential e " + shown(tangential, "1"),
       range(protocol["speed_m_per_s"], "m/s"), range(protocol["diameter_1_m"], "um"),
       range(protocol["diameter_2_m"], "um"), shown(protocol["density_1_kg_per_m3"], "kg/m3"),
       shown(protocol["density_2_kg_per_m3"], "kg/m3"),
@@ -105,9 +103,33 @@ std::string settings(const Json& d) {
   if (!protocol["approach_time_s"].is_null())
     text += fmt::format("  spheres start {} us before they would meet at one point\n",
                         shown(protocol["approach_time_s"], "us"));
+  return text;
+}
+
+std::string settings(const Json& d) {
+  auto text =
+      fmt::format("{} collisions of two spheres, protocol {}, seed {}\n", d["pairs"].get<std::size_t>(),
+                  d["protocol"]["name"].get<std::string>(), d["seed"].get<std::uint64_t>()) +
+      drawn(d);
   if (!d["speed_cap_m_per_s"].is_null())
     text += fmt::format("  velocities after the contact are cut to {} m/s\n",
                         shown(d["speed_cap_m_per_s"], "m/s"));
+  return text;
+}
+
+std::string made_from(const Json& d) {
+  std::string text;
+  if (!d["provenance"].empty()) text += "\nmade from\n";
+  for (const auto& [key, value] : d["provenance"].items())
+    text += fmt::format("  {:<28}{}\n", key, value.get<std::string>());
+  return text;
+}
+
+std::string model_words(const Json& d) {
+  auto text = fmt::format("collision model: {}\nlearned from protocol {}\n", d["model"].get<std::string>(),
+                          d["protocol"]["name"].get<std::string>()) +
+              drawn(d) + made_from(d);
+  if (!d["accuracy"].empty()) text += "\naccuracy\n" + d["accuracy"].dump(2) + "\n";
   return text;
 }
 
@@ -153,7 +175,20 @@ Json describe_collisions(const particle::CollisionSet& set) {
           {"provenance", set.provenance}};
 }
 
+Json describe_collision_model(const particle::CollisionBundle& bundle) {
+  Json json{{"kind", "collision model"},
+            {"surrogate", particle::surrogate_names.name(bundle.model->kind())},
+            {"model", bundle.model->text()},
+            {"protocol", json_of(bundle.protocol)},
+            {"law", json_of(bundle.law)},
+            {"provenance", bundle.provenance},
+            {"accuracy", Json::parse(bundle.accuracy_json, nullptr, false)}};
+  if (json["accuracy"].is_discarded()) json["accuracy"] = nullptr;
+  return json;
+}
+
 std::string collision_words(const Json& d) {
+  if (d["kind"] == "collision model") return model_words(d);
   auto text = settings(d) + kinds(d);
   text += fmt::format("\n{:<36}{:<6}{:>12}{:>12}{:>12}\n", "", "unit", "least", "mean", "most");
   text += line("speed of a sphere", d["speed"], "m/s") + line("speed afterwards", d["speed_after"], "m/s") +
@@ -174,10 +209,7 @@ std::string collision_words(const Json& d) {
           counted(d, "capped", "left at the speed cap") +
           counted(d, "stayed", "did not part and go on as one body along the normal") +
           counted(d, "never_met", "never touched");
-  if (!d["provenance"].empty()) text += "\nmade from\n";
-  for (const auto& [key, value] : d["provenance"].items())
-    text += fmt::format("  {:<28}{}\n", key, value.get<std::string>());
-  return text;
+  return text + made_from(d);
 }
 
 }  // namespace elrom::programs

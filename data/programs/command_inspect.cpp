@@ -13,9 +13,17 @@ namespace elrom::programs {
 
 namespace {
 
+bool is_collision_model(const std::filesystem::path& path) {
+  const auto file = io::TensorFile::open(path);
+  return file.has_text("kind") && file.text("kind") == io::kinds::collision.name;
+}
+
 nlohmann::ordered_json describe(const std::filesystem::path& path) {
   const auto ending = path.extension();
-  if (ending == ".elrom") return ingest::describe_bundle(model::BundleReader(path));
+  if (ending == ".elrom") {
+    if (is_collision_model(path)) return describe_collision_model(particle::CollisionBundle::read(path));
+    return ingest::describe_bundle(model::BundleReader(path));
+  }
   if (ending == ".h5" || ending == ".hdf5" || ending == ".hdf") {
     const auto kind = ingest::kind_of(path);
     if (kind == io::kinds::snapshots.name) return ingest::describe_store(field::SnapshotStore::open(path));
@@ -32,7 +40,8 @@ nlohmann::ordered_json describe(const std::filesystem::path& path) {
 }
 
 std::string in_words(const nlohmann::ordered_json& description) {
-  return description["kind"] == "collisions" ? collision_words(description) : ingest::in_words(description);
+  const bool collides = description["kind"] == "collisions" || description["kind"] == "collision model";
+  return collides ? collision_words(description) : ingest::in_words(description);
 }
 
 }  // namespace
@@ -45,11 +54,11 @@ void add_inspect(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<Options>();
   auto* command = program.add_subcommand(
       "inspect",
-      "Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle, a prediction or a set of "
-      "collisions: cases, loads, inputs, fields, units; kinds of collisions, speeds, energy lost.");
+      "Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle, a prediction, a set of collisions "
+      "or a collision model: cases, loads, inputs, fields, units; kinds of collisions, speeds, energy lost.");
   command
       ->add_option("FILE", options->path,
-                   "Store, mesh, case, bundle (model.elrom), prediction (.hdf) or collisions")
+                   "Store, mesh, case, bundle (model.elrom), prediction (.hdf), collisions, collision model")
       ->required()
       ->type_name("FILE");
   command->add_flag("--json", options->json, "Print JSON");

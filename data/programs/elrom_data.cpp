@@ -1,4 +1,4 @@
-// elrom-data: CFD results into snapshot stores, collisions into sets. Each subcommand lies in its own command_<name>.cpp.
+// elrom-data: CFD results into stores, collisions into sets. Each subcommand has its own command_<name>.cpp.
 
 #include "commands.hpp"
 #include "elrom/base/app.hpp"

@@ -12,6 +12,7 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/io/tensor_file.hpp"
 #include "process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::faults {
 namespace {
@@ -160,6 +161,20 @@ void fail_programs(const Failure& failure, const Workshop& shop, const fs::path&
       tally);
 }
 
+void fail_collisions(const Failure& failure, const Workshop& shop, const fs::path& folder, Tally& tally) {
+  const auto set = folder / "collisions.h5", good_set = folder / "good_collisions.h5";
+  if (!fs::exists(good_set) && run(shop.collide_command(good_set)).status != 0)
+    throw std::runtime_error("cannot collide");
+  // What one failing run leaves the next one goes on from.
+  fail_every_call(
+      failure, "collisions", shop.collide_command(set), shop, [&] { fs::remove(set); },
+      [&](const Exit& exit) { return collisions_whole(set) && (exit.status != 0 || fs::exists(set)); },
+      tally);
+  const auto after = run(shop.collide_command(set));
+  tally.count(after.status == 0 && test::read_bytes(set) == test::read_bytes(good_set),
+              "collisions after failures: " + after.output);
+}
+
 Tally under(const std::vector<Failure>& failures, const Workshop& shop, const std::string& name) {
   Tally tally;
   const auto folder = shop.folder / name;
@@ -167,7 +182,10 @@ Tally under(const std::vector<Failure>& failures, const Workshop& shop, const st
   if (run(shop.import_command(folder / "old.h5", shop.case_files(8))).status != 0)
     throw std::runtime_error("cannot import");
   shop.make_study(folder / "study_before", 10);
-  for (const auto& failure : failures) fail_programs(failure, shop, folder, tally);
+  for (const auto& failure : failures) {
+    fail_programs(failure, shop, folder, tally);
+    fail_collisions(failure, shop, folder, tally);
+  }
   return tally;
 }
 
@@ -202,6 +220,12 @@ Tally disk_full(const Workshop& shop) {
     tally.count(
         exit.signal == 0 && (exit.status == 0 ? state == 10 : state == -1),
         "import to a disk of " + size + ": status " + std::to_string(exit.status) + ", " + exit.output);
+    fs::remove(store);
+    const auto set = folder / "collisions.h5";
+    const auto collided = run(shop.collide_command(set));
+    tally.count(collided.signal == 0 && fs::exists(set) == (collided.status == 0) && collisions_whole(set),
+                "collisions to a disk of " + size + ": status " + std::to_string(collided.status) + ", " +
+                    collided.output);
   }
   return tally;
 }

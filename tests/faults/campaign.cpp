@@ -26,7 +26,7 @@ struct Section {
 
 const std::vector<Section>& sections() {
   static const std::vector<Section> all = {
-      {"kills", "kill -9 at random moments of import, training, prediction", kills},
+      {"kills", "kill -9 at random moments of import, training, prediction, collisions", kills},
       {"network_kills", "kill -9 at random moments of networks' training", network_kills},
       {"truncations", "files cut at many lengths are refused by name", truncations},
       {"flipped_bytes", "changed bytes of a bundle are found", flipped_bytes},
@@ -36,7 +36,7 @@ const std::vector<Section>& sections() {
       {"failing_allocations", "memory that runs out leaves old or new state", failing_allocations},
       {"disk_full", "a full disk leaves old or new state", disk_full},
       {"two_at_once", "two programs on one store or study; readers meanwhile", two_at_once},
-      {"fuzz", "hostile bundles, tables and cases are refused", fuzz_inputs},
+      {"fuzz", "hostile bundles, tables, cases and collisions are refused", fuzz_inputs},
       {"libfuzzer", "the same by libFuzzer, with sanitizers and limits of time and memory", fuzz_programs},
   };
   return all;

@@ -52,10 +52,13 @@ struct Workshop {
   [[nodiscard]] std::vector<std::string> train_command(const std::filesystem::path& study) const;
   [[nodiscard]] std::vector<std::string> predict_command(const std::filesystem::path& bundle,
                                                          const std::filesystem::path& output) const;
+  /// A set of collisions, in blocks of 8192 pairs.
+  [[nodiscard]] std::vector<std::string> collide_command(const std::filesystem::path& output,
+                                                         std::size_t n_pairs = 9000) const;
 };
 
-/// kill -9 at random moments of import, training and prediction; afterwards old or new state, and the next
-/// run ends.
+/// kill -9 at random moments of import, training, prediction and the making of collisions; afterwards old or
+/// new state, and the next run ends.
 Tally kills(const Workshop& workshop);
 /// kill -9 at random moments of a training of networks, again and again until it ends: its bundle is byte for
 /// byte that of a run left alone, and so are its trials.
@@ -83,5 +86,7 @@ Tally two_at_once(const Workshop& workshop);
 [[nodiscard]] long store_state(const std::filesystem::path& store);
 /// Every prediction in a folder, which need not exist, opens and reads whole.
 [[nodiscard]] bool predictions_whole(const std::filesystem::path& folder);
+/// A set of collisions, which need not exist, opens and reads whole.
+[[nodiscard]] bool collisions_whole(const std::filesystem::path& path);
 
 }  // namespace elrom::faults

@@ -116,38 +116,6 @@ void load_and_predict(const fs::path& path) {
   predictor.predict(inputs, values, width, scratch);
 }
 
-/// With the header's digest made true where there is room for
-/// one: changed headers would all end there otherwise.
-std::vector<std::uint8_t> with_true_digest(Bytes input) {
-  std::vector<std::uint8_t> bytes(input.begin(), input.end());
-  std::uint64_t length = 0;
-  if (bytes.size() < sizeof length) return bytes;
-  std::memcpy(&length, bytes.data(), sizeof length);
-  if (length > bytes.size() - sizeof length) return bytes;
-  char* const text = reinterpret_cast<char*>(bytes.data()) + sizeof length;
-  const std::string_view json(text, length);
-  const auto digest = io::header_digest(json);
-  const std::string mark = "\"" + std::string(io::header_digest_key) + "\":\"";
-  if (!digest.empty()) std::memcpy(text + json.find(mark) + mark.size(), digest.data(), digest.size());
-  return bytes;
-}
-
-/// Takes numbers from the input, zeros when it is used up.
-class Dice {
- public:
-  explicit Dice(Bytes input) : input_(input) {}
-  std::size_t below(std::size_t n) {
-    std::size_t value = 0;
-    for (int i = 0; i < 2 && at_ < input_.size(); ++i) value = value << 8 | input_[at_++];
-    return n == 0 ? 0 : value % n;
-  }
-  [[nodiscard]] bool used_up() const { return at_ >= input_.size(); }
-
- private:
-  Bytes input_;
-  std::size_t at_ = 0;
-};
-
 void change_text(io::TensorFile& file, Dice& dice) {
   auto entry = file.texts().begin();
   std::advance(entry, dice.below(file.texts().size()));
@@ -171,19 +139,14 @@ void change_text(io::TensorFile& file, Dice& dice) {
 }
 
 void change_tensor(io::TensorFile& file, Dice& dice) {
+  if (file.tensors().empty()) return;
   auto entry = file.tensors().begin();
   std::advance(entry, dice.below(file.tensors().size()));
   const auto& tensor = entry->second;
   if (tensor.type() != io::DType::f32 && tensor.type() != io::DType::f64) return;
   auto shape = tensor.shape();
   std::vector<float> values(tensor.size(), 0.5f);
-  constexpr float hard[] = {0.f,
-                            -1.f,
-                            1e38f,
-                            1e-42f,
-                            std::numeric_limits<float>::quiet_NaN(),
-                            std::numeric_limits<float>::infinity()};
-  if (!values.empty()) values[dice.below(values.size())] = hard[dice.below(6)];
+  if (!values.empty()) values[dice.below(values.size())] = hard_numbers[dice.below(std::size(hard_numbers))];
   if (dice.below(2) == 1 && !shape.empty()) {
     shape[dice.below(shape.size())] = dice.below(5);
     values.assign(std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>()), 0.5f);
@@ -197,6 +160,35 @@ void change_tensor(io::TensorFile& file, Dice& dice) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> with_true_digest(Bytes input) {
+  std::vector<std::uint8_t> bytes(input.begin(), input.end());
+  std::uint64_t length = 0;
+  if (bytes.size() < sizeof length) return bytes;
+  std::memcpy(&length, bytes.data(), sizeof length);
+  if (length > bytes.size() - sizeof length) return bytes;
+  char* const text = reinterpret_cast<char*>(bytes.data()) + sizeof length;
+  const std::string_view json(text, length);
+  const auto digest = io::header_digest(json);
+  const std::string mark = "\"" + std::string(io::header_digest_key) + "\":\"";
+  if (!digest.empty()) std::memcpy(text + json.find(mark) + mark.size(), digest.data(), digest.size());
+  return bytes;
+}
+
+std::size_t Dice::below(std::size_t n) {
+  std::size_t value = 0;
+  for (int i = 0; i < 2 && at_ < input_.size(); ++i) value = value << 8 | input_[at_++];
+  return n == 0 ? 0 : value % n;
+}
+
+void change(io::TensorFile& file, Dice& dice) {
+  while (!dice.used_up()) {
+    if (dice.below(2) == 0)
+      change_text(file, dice);
+    else
+      change_tensor(file, dice);
+  }
+}
 
 std::map<std::string, model::Bundle> small_bundles() {
   auto cases = std::make_unique<field::CaseSet>();
@@ -252,12 +244,7 @@ void fuzz_bundle_content(Bytes input) {
   try {
     Dice dice(input);
     auto file = good[dice.below(good.size())];
-    while (!dice.used_up()) {
-      if (dice.below(2) == 0)
-        change_text(file, dice);
-      else
-        change_tensor(file, dice);
-    }
+    change(file, dice);
     const auto path = memory_file("content.elrom", {});
     file.write(path);
     load_and_predict(path);

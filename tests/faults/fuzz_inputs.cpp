@@ -65,10 +65,20 @@ struct Share {
 };
 
 const std::vector<Share>& shares() {
-  static const std::vector<Share> all = {{"bundle", 980, 700},        {"bundle", 20, 12000},
-                                         {"bundle_content", 20, 400}, {"cases_csv", 15, 1000},
-                                         {"cases_json", 15, 1000},    {"cases_toml", 10, 1000},
-                                         {"fluent_ascii", 10, 1000},  {"foam", 10, 1000}};
+  static const std::vector<Share> all = {
+      {"bundle", 980, 700},
+      {"bundle", 20, 12000},
+      {"bundle_content", 20, 400},
+      {"cases_csv", 15, 1000},
+      {"cases_json", 15, 1000},
+      {"cases_toml", 10, 1000},
+      {"fluent_ascii", 10, 1000},
+      {"foam", 10, 1000},
+      // Each of their inputs costs a process, since HDF5 is not to be trusted.
+      {"collisions", 1, 40000},
+      {"collisions_content", 1, 400},
+      {"collision_model", 20, 4000},
+      {"collision_model_content", 10, 400}};
   return all;
 }
 

@@ -9,6 +9,7 @@
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "fuzz_bundles.hpp"
+#include "fuzz_collisions.hpp"
 #include "memory_file.hpp"
 
 namespace elrom::faults {
@@ -61,7 +62,11 @@ const std::vector<FuzzTarget>& fuzz_targets() {
                                                   {"cases_json", fuzz_cases_json},
                                                   {"cases_toml", fuzz_cases_toml},
                                                   {"fluent_ascii", fuzz_fluent},
-                                                  {"foam", fuzz_foam}};
+                                                  {"foam", fuzz_foam},
+                                                  {"collisions", fuzz_collisions},
+                                                  {"collisions_content", fuzz_collisions_content},
+                                                  {"collision_model", fuzz_collision_model},
+                                                  {"collision_model_content", fuzz_collision_model_content}};
   return targets;
 }
 
@@ -77,6 +82,7 @@ std::vector<std::string> seeds_of(const std::string& target) {
     add(tiny_bundle());
     for (const auto& [name, bundle] : small_bundles()) add(bundle);
   }
+  if (target.starts_with("collision")) seeds = collision_seeds(target);
   std::vector<fs::path> files;
   const auto corpus = fs::path(ELROM_SOURCE_DIR) / "tests/faults/corpus" / target;
   if (fs::exists(corpus)) files.assign(fs::directory_iterator(corpus), fs::directory_iterator());

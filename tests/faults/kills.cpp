@@ -89,6 +89,26 @@ void kill_predictions(const Workshop& shop, std::size_t n, base::Random& random,
   tally.count(again.status == 0 && predictions_whole(output), "prediction after kills: " + again.output);
 }
 
+/// Kills through one set until a run ends by itself; its bytes are those of a run left alone.
+void kill_collisions(const Workshop& shop, std::size_t n, base::Random& random, Tally& tally) {
+  const auto whole = shop.folder / "whole_collisions.h5", output = shop.folder / "killed_collisions.h5";
+  constexpr std::size_t n_pairs = 60000;
+  const auto made = run(shop.collide_command(whole, n_pairs));
+  if (made.status != 0) throw std::runtime_error("cannot collide: " + made.output);
+  const auto wanted = base::sha256_file(whole);
+  for (std::size_t n_kills = 0; n_kills < n;) {
+    fs::remove(output);
+    while (n_kills < n && kill_at_random(shop.collide_command(output, n_pairs), made.seconds, random)) {
+      ++n_kills;
+      tally.count(!fs::exists(output) || base::sha256_file(output) == wanted, "collisions: a broken file");
+    }
+    const auto again = run(shop.collide_command(output, n_pairs));
+    tally.count(again.status == 0 && base::sha256_file(output) == wanted,
+                "collisions after kills: another file than without, or none: " + again.output);
+    tally.count(!fs::exists(shop.folder / ".killed_collisions.h5.blocks"), "collisions: blocks stay");
+  }
+}
+
 /// What every trial of a study's searches was worth.
 std::map<std::string, double> trials_of(const fs::path& study) {
   std::map<std::string, double> values;
@@ -180,6 +200,7 @@ Tally kills(const Workshop& workshop) {
   kill_imports(workshop, workshop.times(60, 6), random, tally);
   kill_trainings(workshop, workshop.times(100, 10), random, tally);
   kill_predictions(workshop, workshop.times(40, 6), random, tally);
+  kill_collisions(workshop, workshop.times(60, 6), random, tally);
   return tally;
 }
 

@@ -3,6 +3,7 @@
 #include "campaign.hpp"
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/particle/collision_set.hpp"
 #include "process.hpp"
 
 namespace elrom::faults {
@@ -55,6 +56,31 @@ std::vector<std::string> Workshop::predict_command(const std::filesystem::path& 
           (source / "data/cases/cases.csv").string(),
           "--output",
           output.string()};
+}
+
+std::vector<std::string> Workshop::collide_command(const std::filesystem::path& output,
+                                                   std::size_t n_pairs) const {
+  return {program("elrom-data"),
+          "collisions",
+          "--pairs",
+          std::to_string(n_pairs),
+          "--law",
+          "hertz",
+          "--friction",
+          "0.3",
+          "--steps-per-contact",
+          "100",
+          "--output",
+          output.string()};
+}
+
+bool collisions_whole(const std::filesystem::path& path) {
+  try {
+    if (std::filesystem::exists(path)) (void)particle::read_collisions(path);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 long store_state(const std::filesystem::path& store) {

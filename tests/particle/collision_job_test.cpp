@@ -57,7 +57,7 @@ TEST_F(CollisionJobTest, TheFileHoldsWhatIsMadeInOnePiece) {
   auto whole = make_collisions(job.protocol, job.law, job.seed, 0, job.n_pairs, job.options);
   whole.provenance = {{"made by", "a test"}};
   write_collisions(folder_ / "whole.h5", whole);
-  EXPECT_EQ(test::read_bytes(path_), test::read_bytes(folder_ / "whole.h5"));
+  EXPECT_TRUE(test::read_bytes(path_) == test::read_bytes(folder_ / "whole.h5"));
   EXPECT_FALSE(fs::exists(blocks_));
 }
 
@@ -76,7 +76,7 @@ TEST_F(CollisionJobTest, AStoppedJobGoesOnToTheSameBytes) {
   auto job = small_job();
   job.options.n_threads = 1;
   EXPECT_EQ(make(job).n_reused, 8192u);
-  EXPECT_EQ(test::read_bytes(path_), wanted);
+  EXPECT_TRUE(test::read_bytes(path_) == wanted);
   EXPECT_FALSE(fs::exists(folder_ / ".collisions.h5.77.0.tmp"));
 }
 
@@ -114,7 +114,7 @@ TEST_F(CollisionJobTest, ADamagedBlockIsMadeAgain) {
   bytes[bytes.size() / 2] ^= 1;
   test::write_bytes(block, bytes);
   EXPECT_EQ(make(small_job()).n_reused, 0u);
-  EXPECT_EQ(test::read_bytes(path_), wanted);
+  EXPECT_TRUE(test::read_bytes(path_) == wanted);
 }
 
 TEST_F(CollisionJobTest, TwoOnOneFileAreRefused) {
