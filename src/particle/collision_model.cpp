@@ -101,11 +101,15 @@ Components per_sphere(const Components& impulses, const Scalars& divisor) {
 
 }  // namespace
 
-Impulses::Impulses(std::size_t n)
-    : linear_1(Components::Zero(static_cast<Eigen::Index>(n), 3)),
-      linear_2(linear_1),
-      angular_1(linear_1),
-      angular_2(linear_1) {}
+Impulses::Impulses(std::size_t n) {
+  resize(n);
+  for (auto* part : {&linear_1, &linear_2, &angular_1, &angular_2}) part->setZero();
+}
+
+void Impulses::resize(std::size_t n) {
+  for (auto* part : {&linear_1, &linear_2, &angular_1, &angular_2})
+    part->resize(static_cast<Eigen::Index>(n), 3);
+}
 
 Motion apply(const Pairs& pairs, const Impulses& impulses) {
   const Scalars mass_1 = sphere_mass(1, 1) * pairs.density_1 * pairs.diameter_1.cube();

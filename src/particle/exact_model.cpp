@@ -10,6 +10,7 @@ ExactModel::ExactModel(const ContactLaw& law)
 }
 
 void ExactModel::impulses(const Pairs& pairs, Impulses& impulses) const {
+  impulses.resize(pairs.size());
   for (std::size_t first = 0; first < pairs.size(); first += lane_width) {
     const auto impact = impact_of(pairs, first);
     const Lane normal = impact.reduced_mass * (1 + restitution_) * impact.normal_speed;

@@ -133,6 +133,7 @@ FrameModel::FrameModel(const ContactLaw& law, std::shared_ptr<const Regressor> r
 }
 
 void FrameModel::impulses(const Pairs& pairs, Impulses& impulses) const {
+  impulses.resize(pairs.size());
   const bool with_spins = regressor_->n_inputs() == sizes_of(true).inputs;
   const SpeedScale scale(law_);
   Table inputs = table(block_size, regressor_->n_inputs()),

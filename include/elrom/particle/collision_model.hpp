@@ -29,7 +29,9 @@ inline constexpr base::EnumNames<SurrogateKind, 3> surrogate_names{"surrogate",
 /// What a collision gives each sphere: linear, N s, and about its own centre, N m s.
 struct Impulses {
   Impulses() = default;
-  explicit Impulses(std::size_t n);
+  explicit Impulses(std::size_t n);  ///< all zero
+  /// Values are lost where the size changes.
+  void resize(std::size_t n);
   Components linear_1, linear_2;
   Components angular_1, angular_2;
 };
@@ -41,7 +43,7 @@ class CollisionModel {
   [[nodiscard]] virtual SurrogateKind kind() const = 0;
   /// For people: "frame, chebyshev".
   [[nodiscard]] virtual std::string text() const = 0;
-  /// Pairs that part, or whose numbers are not finite, get none. @param impulses of the pairs' size, overwritten
+  /// Pairs that part, or whose numbers are not finite, get none. @param impulses overwritten, and sized to the pairs
   virtual void impulses(const Pairs& pairs, Impulses& impulses) const = 0;
   /// Its tensors; the bundle adds law and protocol.
   virtual void write(io::TensorFile& file) const = 0;
