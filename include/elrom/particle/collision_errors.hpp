@@ -12,6 +12,9 @@ namespace elrom::particle {
 
 /// Of the pairs first to first + count of a set.
 struct CollisionErrors {
+  /// A pair counts as given energy from this share of its own on: less is rounding.
+  static constexpr double gain_from = 1e-12;
+
   std::size_t n_pairs = 0;
   std::array<double, 3> mae{};  ///< of u, v, w of both spheres, m/s
   double mae_velocity = 0;      ///< mean of the three
@@ -27,6 +30,11 @@ struct CollisionErrors {
   double energy_lost_truth = 0;  ///< by the set
 };
 
+/// What the model makes of each pair.
+[[nodiscard]] Motion motion_after(const CollisionModel& model, const Pairs& pairs);
+/// |error of the velocity| / |velocity after| of all spheres, those of number 1 first; without those that rest afterwards.
+[[nodiscard]] std::vector<double> relative_errors(const Motion& model, const Motion& truth);
+/// @param count at least one pair
 [[nodiscard]] CollisionErrors errors_of(const CollisionModel& model, const CollisionSet& set,
                                         std::size_t first, std::size_t count);
 /// {"mae_m_per_s": [u, v, w], ...}
