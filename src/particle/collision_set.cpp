@@ -1,5 +1,8 @@
 #include "elrom/particle/collision_set.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace elrom::particle {
 namespace {
 
@@ -10,6 +13,11 @@ void cut(Components& velocity, double cap) {
 }
 
 }  // namespace
+
+std::size_t n_test_pairs(std::size_t n, double share) {
+  return std::min(
+      n, std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(share * static_cast<double>(n)))));
+}
 
 CollisionSet make_collisions(const Protocol& protocol, const ContactLaw& law, std::uint64_t seed,
                              std::size_t first, std::size_t count, const PairSolverOptions& options,

@@ -6,6 +6,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/particle/chebyshev.hpp"
+#include "elrom/particle/network_regressor.hpp"
 #include "elrom/particle/trees.hpp"
 
 namespace elrom::particle {
@@ -24,7 +25,8 @@ struct RegressorKind {
   Read read;
 };
 constexpr std::array regressor_kinds{RegressorKind{"trees", read_as<Trees>},
-                                     RegressorKind{"chebyshev", read_as<Chebyshev>}};
+                                     RegressorKind{"chebyshev", read_as<Chebyshev>},
+                                     RegressorKind{"network", read_as<NetworkRegressor>}};
 
 }  // namespace
 

@@ -6,10 +6,13 @@
 #include <Eigen/Geometry>
 
 #include "elrom/base/error.hpp"
+#include "elrom/particle/collision_model.hpp"
 #include "elrom/particle/pairs.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::particle::test {
 
+using elrom::test::TemporaryFolder;
 using Vector = Eigen::Vector3d;
 
 inline Pairs one_pair(const Vector& velocity_1, const Vector& velocity_2, const Vector& normal,
@@ -38,6 +41,12 @@ void expect_refused(const Call& call, const std::string& text) {
 }
 
 inline Vector row(const Components& values, Eigen::Index i = 0) { return values.row(i).matrix().transpose(); }
+
+inline Motion after(const CollisionModel& model, const Pairs& pairs) {
+  Impulses impulses(pairs.size());
+  model.impulses(pairs, impulses);
+  return apply(pairs, impulses);
+}
 
 /// Kinetic, of each pair, J.
 inline Scalars energy(const Pairs& pairs, const Motion& motion) {

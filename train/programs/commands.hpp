@@ -10,6 +10,7 @@
 
 #include "elrom/base/log.hpp"
 #include "elrom/study/study.hpp"
+#include "elrom/surrogate/tree_trainer.hpp"
 
 namespace elrom::programs {
 
@@ -33,6 +34,11 @@ using StudyWork = std::function<int(const study::Settings& settings, const study
 /// the others train for it. @throws NotBuiltError for several processes without MPI
 [[nodiscard]] int in_study(const StudyArguments& arguments, const StudyWork& work);
 
+/// What this build can train with; missing parts say so when they are asked to train.
+/// @throws NotBuiltError for a device other than the processor without LibTorch
+[[nodiscard]] std::shared_ptr<const networks::Trainer> make_network_trainer(const std::string& device);
+[[nodiscard]] std::shared_ptr<const surrogate::TreeTrainer> make_tree_trainer();
+
 /// A subcommand sets `run` when it is chosen; its value is the exit status.
 using Work = std::function<int()>;
 void add_run(CLI::App& app, Work& run);
@@ -41,5 +47,6 @@ void add_search(CLI::App& app, Work& run);
 void add_fit(CLI::App& app, Work& run);
 void add_retrain(CLI::App& app, Work& run);
 void add_status(CLI::App& app, Work& run);
+void add_collisions(CLI::App& app, Work& run);
 
 }  // namespace elrom::programs

@@ -1,4 +1,4 @@
-// The one place that knows which of LibTorch and MPI are part of this build.
+// The one place that knows which of LibTorch, MPI and XGBoost are part of this build.
 #include <cstdlib>
 
 #include "commands.hpp"
@@ -10,21 +10,12 @@
 #if ELROM_HAS_MPI
 #include "elrom/mpi/world.hpp"
 #endif
+#if ELROM_HAS_XGBOOST
+#include "elrom/xgboost/trainer.hpp"
+#endif
 
 namespace elrom::programs {
 namespace {
-
-std::shared_ptr<const networks::Trainer> make_trainer(const study::Settings& settings) {
-#if ELROM_HAS_TORCH
-  return elrom::torch::make_torch_trainer(settings.device);
-#else
-  if (settings.device != "cpu") {
-    throw NotBuiltError({.what = "device " + settings.device + " needs LibTorch, which this build left out",
-                         .advice = "build with -DELROM_TORCH=ON"});
-  }
-  return nullptr;
-#endif
-}
 
 /// Whether a launcher (mpirun, mpiexec, srun) started this process beside others.
 bool is_one_of_several() {
@@ -37,7 +28,7 @@ bool is_one_of_several() {
 int work_alone(const StudyArguments& arguments, const StudyWork& work) {
   const auto settings = arguments.resolve();
   const auto log = arguments.log();
-  return work(settings, {.trainer = make_trainer(settings)}, *log);
+  return work(settings, {.trainer = make_network_trainer(settings.device)}, *log);
 }
 
 #if ELROM_HAS_MPI
@@ -47,13 +38,13 @@ int work_together(const StudyArguments& arguments, const StudyWork& work) {
   const mpi::World world;
   if (world.rank() > 0) {
     // Settings are read with the first unit: when they are wrong, rank 0 says so once and there is none.
-    world.serve([&] { return make_trainer(arguments.resolve()); }, stop);
+    world.serve([&] { return make_network_trainer(arguments.resolve().device); }, stop);
     return 0;
   }
   const auto settings = arguments.resolve();
   const auto log = arguments.log();
   const auto workers = world.workers();
-  auto trainer = make_trainer(settings);
+  auto trainer = make_network_trainer(settings.device);
   if (trainer != nullptr) trainer = workers->trainer(std::move(trainer));
   return work(settings, {.trainer = std::move(trainer), .workers = workers.get()}, *log);
 }
@@ -65,6 +56,26 @@ int work_together(const StudyArguments&, const StudyWork&) {
 #endif
 
 }  // namespace
+
+std::shared_ptr<const networks::Trainer> make_network_trainer(const std::string& device) {
+#if ELROM_HAS_TORCH
+  return elrom::torch::make_torch_trainer(device);
+#else
+  if (device != "cpu") {
+    throw NotBuiltError({.what = "device " + device + " needs LibTorch, which this build left out",
+                         .advice = "build with -DELROM_TORCH=ON"});
+  }
+  return nullptr;
+#endif
+}
+
+std::shared_ptr<const surrogate::TreeTrainer> make_tree_trainer() {
+#if ELROM_HAS_XGBOOST
+  return elrom::xgboost::make_tree_trainer();
+#else
+  return surrogate::missing_tree_trainer();
+#endif
+}
 
 int in_study(const StudyArguments& arguments, const StudyWork& work) {
   return is_one_of_several() ? work_together(arguments, work) : work_alone(arguments, work);

@@ -44,15 +44,12 @@ LearnedPart learn_range(const particle::CollisionSet& set, const DocumentSetting
     throw InputError(Problem{.what = "too few collisions to learn from",
                              .found = std::to_string(set.size()),
                              .expected = "20 or more"});
+  const auto n_test = particle::n_test_pairs(set.size(), settings.test);
   std::vector<std::size_t> rows(set.size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
-  base::Random(context.seed.derive("test")).shuffle(rows);
-  const auto n_test = std::max<std::size_t>(
-      1, static_cast<std::size_t>(std::lround(settings.test * static_cast<double>(set.size()))));
   LearnedPart learned;
-  learned.range.test.assign(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(n_test));
-  std::ranges::sort(learned.range.test);
-  rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(n_test));
+  learned.range.test.assign(rows.end() - static_cast<std::ptrdiff_t>(n_test), rows.end());
+  rows.resize(rows.size() - n_test);
 
   const Table known = before(rows, Eigen::all);
   const auto scaler = standardiser_of(known);

@@ -44,6 +44,8 @@ inline constexpr FileKind collisions{
 inline constexpr FileKind collision_summary{
     "elrom-collision-summary", {1, 0}, "make it again with elrom-data collisions"};
 inline constexpr FileKind collision{"elrom-collision", {1, 0}, "train again with elrom-train collisions"};
+inline constexpr FileKind collision_training{
+    "elrom-collision-training", {1, 0}, "train again with elrom-train collisions"};
 inline constexpr FileKind collision_report{
     "elrom-collision-report", {1, 0}, "report again with elrom-report collisions"};
 
@@ -65,6 +67,7 @@ inline constexpr std::array all{mesh,
                                 collisions,
                                 collision_summary,
                                 collision,
+                                collision_training,
                                 collision_report};
 }  // namespace kinds
 

@@ -27,6 +27,9 @@ struct CollisionSet {
   [[nodiscard]] std::size_t size() const { return pairs.size(); }
 };
 
+/// How many pairs judge: the last ones of a set of n, from which no model learns.
+[[nodiscard]] std::size_t n_test_pairs(std::size_t n, double share = 0.05);
+
 /// Draws and collides pairs first to first + count; the same pairs whatever the blocks. @throws Interrupted
 [[nodiscard]] CollisionSet make_collisions(const Protocol& protocol, const ContactLaw& law,
                                            std::uint64_t seed, std::size_t first, std::size_t count,

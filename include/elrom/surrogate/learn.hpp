@@ -53,9 +53,6 @@ struct LearnedCollisions {
   std::optional<LearnedDocument> document;
 };
 
-/// Number of the pairs that judge: the last ones.
-[[nodiscard]] std::size_t n_test_pairs(const particle::CollisionSet& set, double share = 0.05);
-
 /// @param low document alone: pairs of the low range, which get trees of their own; may be missing
 /// @throws UsageError for a set that cannot be learned from (too few pairs); NotBuiltError for a trainer that this
 /// build lacks; Interrupted
