@@ -1,9 +1,9 @@
 #include "elrom/particle/collision_summary.hpp"
 
-#include <Eigen/Geometry>
-#include <cmath>
 #include <limits>
-#include <numbers>
+#include <vector>
+
+#include "elrom/particle/balance.hpp"
 
 namespace elrom::particle {
 namespace {
@@ -13,8 +13,6 @@ Spread spread(const Eigen::Ref<const Scalars>& values) {
   if (values.size() == 0) return {none, none, none};
   return {values.minCoeff(), values.mean(), values.maxCoeff()};
 }
-
-Scalars lengths(const Components& vectors) { return vectors.square().rowwise().sum().sqrt(); }
 
 Scalars joined(const Scalars& a, const Scalars& b) {
   Scalars both(a.size() + b.size());
@@ -31,46 +29,8 @@ Scalars surface_speeds(const Pairs& pairs, const Motion& motion) {
                 0.5 * pairs.diameter_2 * lengths(motion.spin_2));
 }
 
-/// Of each pair, degrees; 0 where a vector is none.
-Scalars angles(const Components& a, const Components& b) {
-  Scalars result(a.rows());
-  for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    const Eigen::Vector3d u = a.row(i).matrix().transpose(), v = b.row(i).matrix().transpose();
-    result[i] = std::atan2(u.cross(v).norm(), u.dot(v)) * 180 / std::numbers::pi;
-  }
-  return result;
-}
-
-struct Masses {
-  explicit Masses(const Pairs& pairs) : one(pairs.size()), two(pairs.size()) {
-    for (Eigen::Index i = 0; i < one.size(); ++i) {
-      one[i] = sphere_mass(pairs.diameter_1[i], pairs.density_1[i]);
-      two[i] = sphere_mass(pairs.diameter_2[i], pairs.density_2[i]);
-    }
-  }
-  Scalars one, two;
-};
-
-/// Of all pairs, J; m d^2 / 10 is a solid sphere's moment of inertia.
-double kinetic_energy(const Pairs& pairs, const Masses& mass, const Motion& motion) {
-  const auto of = [](const Scalars& m, const Scalars& d, const Components& v, const Components& w) {
-    return (0.5 * m * (lengths(v).square() + 0.1 * (d * lengths(w)).square())).sum();
-  };
-  return of(mass.one, pairs.diameter_1, motion.velocity_1, motion.spin_1) +
-         of(mass.two, pairs.diameter_2, motion.velocity_2, motion.spin_2);
-}
-
-double momentum_error(const CollisionSet& set, const Masses& mass) {
-  const auto& before = set.pairs.before;
-  const auto& after = set.parting.after;
-  const Components change = (after.velocity_1 - before.velocity_1).colwise() * mass.one +
-                            (after.velocity_2 - before.velocity_2).colwise() * mass.two;
-  const Scalars size = mass.one * lengths(before.velocity_1) + mass.two * lengths(before.velocity_2);
-  return (size > 0).select(lengths(change) / size, 0.0).maxCoeff();
-}
-
 void count_kinds(const Pairs& pairs, const Scalars& impact_angle, CollisionSummary& summary) {
-  const auto apart = angles(pairs.before.velocity_1, pairs.before.velocity_2);
+  const auto apart = angles_between(pairs.before.velocity_1, pairs.before.velocity_2);
   for (Eigen::Index i = 0; i < apart.size(); ++i) {
     if (impact_angle[i] > CollisionSummary::grazing_from)
       ++summary.grazing;
@@ -104,10 +64,9 @@ Scalars durations(const Scalars& all) {
 CollisionSummary summarise(const CollisionSet& set) {
   const auto& pairs = set.pairs;
   const auto& parting = set.parting;
-  const Masses mass(pairs);
   const Components relative = pairs.before.velocity_1 - pairs.before.velocity_2;
-  const auto impact_angle = angles(relative, pairs.normal);
-  const double energy = kinetic_energy(pairs, mass, pairs.before);
+  const auto impact_angle = impact_angles(pairs);
+  const double energy = kinetic_energy(pairs, pairs.before).sum();
   const auto touched = durations(parting.duration);
   CollisionSummary summary{.n_pairs = set.size(),
                            .speed = spread(speeds(pairs.before)),
@@ -120,12 +79,12 @@ CollisionSummary summarise(const CollisionSet& set) {
                            .duration = spread(touched),
                            .surface_speed = spread(surface_speeds(pairs, pairs.before)),
                            .surface_speed_after = spread(surface_speeds(pairs, parting.after)),
-                           .momentum_error = momentum_error(set, mass),
+                           .momentum_error = momentum_errors(pairs, parting.after).maxCoeff(),
                            .started_overlapped = static_cast<std::size_t>((pairs.overlap > 0).count()),
                            .capped = n_capped(set),
                            .stayed = parting.n_stayed,
                            .never_met = set.size() - static_cast<std::size_t>(touched.size())};
-  if (energy > 0) summary.energy_lost = 1 - kinetic_energy(pairs, mass, parting.after) / energy;
+  if (energy > 0) summary.energy_lost = 1 - kinetic_energy(pairs, parting.after).sum() / energy;
   count_kinds(pairs, impact_angle, summary);
   return summary;
 }
