@@ -39,8 +39,8 @@ void add_inspect(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<Options>();
   auto* command = program.add_subcommand(
       "inspect",
-      "Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle or a prediction: "
-      "cases, loads, inputs, fields, units.");
+      R"(Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle or a prediction:
+cases, loads, inputs, fields, units.)");
   command->add_option("FILE", options->path, "Store, mesh, case, bundle (model.elrom) or prediction (.hdf)")
       ->required()
       ->type_name("FILE");
