@@ -1,9 +1,9 @@
 #include "outliers.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "elrom/math/linear_algebra.hpp"
 #include "robust.hpp"
 
 namespace elrom::ingest {
@@ -62,9 +62,8 @@ Eigen::MatrixXd spherical_modes(const MatrixD& centred, Eigen::Index n_modes) {
     const double norm = sphere.row(i).norm();
     if (norm > 0) sphere.row(i) /= norm;
   }
-  const Eigen::MatrixXd gram = sphere * sphere.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
-  Eigen::MatrixXd modes = sphere.transpose() * eigen.eigenvectors().rightCols(n_modes);
+  const math::SymmetricEigen eigen = math::symmetric_eigen(sphere * sphere.transpose());
+  Eigen::MatrixXd modes = sphere.transpose() * eigen.vectors.rightCols(n_modes);
   for (Eigen::Index k = 0; k < n_modes; ++k) {
     const double norm = modes.col(k).norm();
     if (norm > 1e-12) modes.col(k) /= norm;

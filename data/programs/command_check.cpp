@@ -55,11 +55,9 @@ int check(const Options& options) {
 void add_check(CLI::App& program, Work& chosen) {
   auto* command = program.add_subcommand(
       "check",
-      "Looks for suspicious data: cells that are not finite or beyond physical bounds, unit mistakes, "
-      "duplicate cases, "
-      "cases that lie apart from the others, fields and inputs that never change. Cases are compared with "
-      "each other, so "
-      "give the store (or all files) together with a new file. Exit status 3 when something is suspicious.");
+      R"(Looks for suspicious data: cells that are not finite or beyond physical bounds, unit mistakes, duplicate cases,
+cases that lie apart from the others, fields and inputs that never change. Cases are compared with each other, so give
+the store (or all files) together with a new file. Exit status 3 when something is suspicious.)");
   auto options = std::make_shared<Options>();
   command
       ->add_option("targets", options->targets,

@@ -26,10 +26,10 @@ void add_generate(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ingest::GenerateOptions>();
   auto small = std::make_shared<bool>(false);
   options->n_threads = base::available_threads();
-  auto* command = program.add_subcommand("generate",
-                                         "Make a store of any size from a seeded generator with the shape of "
-                                         "a real furnace's fields: for benchmarks and tests\n"
-                                         "of size and speed, never for claims of accuracy.");
+  auto* command = program.add_subcommand(
+      "generate",
+      R"(Make a store of any size from a seeded generator with the shape of a real furnace's fields: for benchmarks and tests
+of size and speed, never for claims of accuracy.)");
   const auto add = [&](const char* name, auto& value, const char* help) {
     return command->add_option(name, value, help)->capture_default_str();
   };

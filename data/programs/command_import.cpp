@@ -38,11 +38,10 @@ int run_import(const ingest::ImportOptions& options, const std::string& policy) 
 void add_import(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ingest::ImportOptions>();
   options->n_threads = base::available_threads();
-  auto* command = program.add_subcommand("import",
-                                         "Read CFD results (EL3D exports, Fluent ASCII or CSV tables, "
-                                         "OpenFOAM case directories), resample them to the reduced\n"
-                                         "mesh and append them to a snapshot store. All files are taken or "
-                                         "none: the store is replaced whole at the end.");
+  auto* command = program.add_subcommand(
+      "import",
+      R"(Read CFD results (EL3D exports, Fluent ASCII or CSV tables, OpenFOAM case directories), resample them to the reduced
+mesh and append them to a snapshot store. All files are taken or none: the store is replaced whole at the end.)");
   command
       ->add_option("--mesh", options->mesh,
                    "Reduced mesh (see 'elrom-data mesh'); may be left out when the store exists")
@@ -57,8 +56,8 @@ void add_import(CLI::App& program, Work& chosen) {
   command
       ->add_option(
           "--furnace", options->furnace,
-          "Furnace description that the store is to carry: openings, mirrors, limits, held-out cases "
-          "[default: MESH.toml beside the mesh, where it is there]; on an existing store also without FILE")
+          R"(Furnace description that the store is to carry: openings, mirrors, limits, held-out cases
+[default: MESH.toml beside the mesh, where it is there]; on an existing store also without FILE)")
       ->type_name("FURNACE.toml");
   base::comma_list(
       command->add_option("--fields", options->fields,
@@ -70,8 +69,8 @@ void add_import(CLI::App& program, Work& chosen) {
   auto policy = std::make_shared<std::string>("refuse");
   command
       ->add_option("--on-suspicious", *policy,
-                   "A case that cannot be right beside the others (mistaken unit, the same case twice): "
-                   "refuse everything, drop that case, or keep it with a warning")
+                   R"(A case that cannot be right beside the others (mistaken unit, the same case twice):
+refuse everything, drop that case, or keep it with a warning)")
       ->capture_default_str()
       ->check(CLI::IsMember({"refuse", "drop", "keep"}));
   command->add_option("FILE", options->files, "CFD results, one a case")->type_name("FILE...");

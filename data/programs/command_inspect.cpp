@@ -54,8 +54,8 @@ void add_inspect(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<Options>();
   auto* command = program.add_subcommand(
       "inspect",
-      "Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle, a prediction, a set of collisions "
-      "or a collision model: cases, loads, inputs, fields, units; kinds of collisions, speeds, energy lost.");
+      R"(Say what is in a snapshot store, a reduced mesh, a CFD result, a bundle, a prediction, a set of
+collisions or a collision model: cases, loads, inputs, fields, units; kinds of collisions, speeds, energy lost.)");
   command
       ->add_option("FILE", options->path,
                    "Store, mesh, case, bundle (model.elrom), prediction (.hdf), collisions, collision model")

@@ -27,10 +27,10 @@ int run_mesh(const MeshOptions& options) {
 
 void add_mesh(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<MeshOptions>();
-  auto* command = program.add_subcommand("mesh",
-                                         "Make a reduced mesh: horizontal planes of a furnace of rectangular "
-                                         "cross-section whose lower part is tapered in x.\n"
-                                         "The defaults are the shipped furnace.");
+  auto* command = program.add_subcommand(
+      "mesh",
+      R"(Make a reduced mesh: horizontal planes of a furnace of rectangular cross-section whose lower part is tapered in x.
+The defaults are the shipped furnace.)");
   const auto add = [&](const char* name, auto& value, const char* help) {
     command->add_option(name, value, help)->capture_default_str();
   };

@@ -2,5 +2,3 @@
 
 ELROM_JSON_INSTANCES(, nlohmann::json);
 ELROM_JSON_INSTANCES(, nlohmann::ordered_json);
-template class nlohmann::basic_json<>;
-template class nlohmann::basic_json<nlohmann::ordered_map>;

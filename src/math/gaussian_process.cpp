@@ -1,11 +1,11 @@
 #include "elrom/math/gaussian_process.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "elrom/base/error.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/optimise.hpp"
 
 namespace elrom::math {
@@ -34,14 +34,14 @@ Covariances covariances(Covariance kind, const MatrixD& scaled, bool with_slope)
 }
 
 /// Cholesky with the least jitter (relative to the diagonal, powers of 100) that succeeds.
-Eigen::LLT<MatrixXd> factorise(MatrixXd k) {
+Cholesky factorise(MatrixXd k) {
   const double diagonal = k.diagonal().mean();
   double added = 0;
   for (double jitter = 1e-12; jitter < 1e-3; jitter *= 100) {
     k.diagonal().array() += jitter * diagonal - added;
     added = jitter * diagonal;
-    Eigen::LLT<MatrixXd> factor(k);
-    if (factor.info() == Eigen::Success) return factor;
+    Cholesky factor(k);
+    if (factor.succeeded()) return factor;
   }
   throw NumericalError("Gaussian process: the covariance matrix is not positive definite even with jitter");
 }
@@ -62,13 +62,13 @@ double gp_negative_log_likelihood(const MatrixD& inputs, const MatrixXd& targets
   const Covariances c = covariances(kind, scaled, true);
   MatrixXd k = parameters.signal_variance * c.k;
   k.diagonal().array() += parameters.noise_variance;
-  const Eigen::LLT<MatrixXd> factor(k);
+  const Cholesky factor(k);
   gradient.setZero(theta.size());
-  if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+  if (!factor.succeeded()) return std::numeric_limits<double>::infinity();
 
-  const MatrixXd inverse = factor.solve(MatrixXd::Identity(n, n));
+  const MatrixXd inverse = factor.inverse();
   const MatrixXd alpha = inverse * targets;
-  const double log_det = 2 * factor.matrixLLT().diagonal().array().log().sum();
+  const double log_det = factor.log_determinant();
   const double value = 0.5 * targets.cwiseProduct(alpha).sum() +
                        0.5 * n_targets * (log_det + static_cast<double>(n) * std::log(2 * std::numbers::pi));
 
@@ -113,9 +113,9 @@ GaussianProcess::GaussianProcess(const MatrixD& inputs, const MatrixXd& targets,
     : parameters_(std::move(parameters)), scaled_inputs_(divided(inputs, parameters_.length_scales)) {
   MatrixXd k = parameters_.signal_variance * covariances(parameters_.covariance, scaled_inputs_, false).k;
   k.diagonal().array() += parameters_.noise_variance;
-  const Eigen::LLT<MatrixXd> factor = factorise(std::move(k));
+  const Cholesky factor = factorise(std::move(k));
   weights_ = factor.solve(targets);
-  inverse_factor_ = factor.matrixL().solve(MatrixXd::Identity(inputs.rows(), inputs.rows()));
+  inverse_factor_ = factor.inverse_factor();
 }
 
 MatrixXd GaussianProcess::cross_covariance(const MatrixD& x) const {

@@ -1,11 +1,11 @@
 #include "elrom/math/pod.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <vector>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/math/linear_algebra.hpp"
 
 namespace elrom::math {
 
@@ -108,16 +108,16 @@ Pod make_pod(const MatrixF& values, std::span<const std::size_t> rows, const Pod
              int n_threads) {
   Pod pod;
   pod.mean = row_mean(values, rows, n_threads);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram(values, rows, pod.mean, n_threads));
-  if (solver.info() != Eigen::Success)
+  const SymmetricEigen eigen = symmetric_eigen(gram(values, rows, pod.mean, n_threads));
+  if (!eigen.converged)
     throw NumericalError("POD: the eigenvalues of the cases' Gram matrix did not converge");
-  const Eigen::VectorXd energies = solver.eigenvalues().reverse().cwiseMax(0);
+  const Eigen::VectorXd energies = eigen.values.reverse().cwiseMax(0);
   pod.total_energy = energies.sum();
   const Eigen::Index n = count_modes(energies, pod.total_energy, rows.size(), truncation);
 
   pod.energies = energies.head(n);
   const Eigen::VectorXd amplitude = pod.energies.cwiseSqrt();
-  const Eigen::MatrixXd vectors = solver.eigenvectors().rowwise().reverse().leftCols(n);
+  const Eigen::MatrixXd vectors = eigen.vectors.rowwise().reverse().leftCols(n);
   pod.coefficients = vectors * amplitude.asDiagonal();
   const Eigen::MatrixXd weights = amplitude.cwiseInverse().asDiagonal() * vectors.transpose();
   pod.modes = combine_rows(weights, values, rows, pod.mean, n_threads);

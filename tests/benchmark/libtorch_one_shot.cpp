@@ -4,7 +4,7 @@
 // inference mode.
 
 #include <fmt/format.h>
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <fstream>
 #include <numeric>

@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "elrom/math/kernel.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/peers.hpp"
@@ -76,7 +75,7 @@ TEST(LeaveOneOut, ClosedFormEqualsRefits) {
     part.diagonal().array() += noise;
     const Eigen::MatrixXd others = y(rest, Eigen::all);
     const Eigen::RowVectorXd row = k(static_cast<Eigen::Index>(left), rest);
-    const Eigen::MatrixXd solved = part.inverse() * others;
+    const Eigen::MatrixXd solved = math::Cholesky(part).solve(others);
     squares += (y.row(static_cast<Eigen::Index>(left)) - row * solved).squaredNorm();
   }
 

@@ -1,7 +1,7 @@
 // The forward pass that ships in elrom::core against LibTorch's, the library the networks are trained with.
 
 #include <gtest/gtest.h>
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <numeric>
 

@@ -2,7 +2,7 @@
 // against a loop of single networks.
 
 #include <gtest/gtest.h>
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include "../../train/networks/lane_network.hpp"
 #include "sequential_screening.hpp"

@@ -3,6 +3,7 @@
 #include "training.hpp"
 
 #include <gtest/gtest.h>
+#include <torch/optim/adamw.h>
 
 #include "support/random_network.hpp"
 

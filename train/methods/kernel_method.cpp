@@ -1,13 +1,12 @@
 #include "elrom/methods/kernel_method.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "derived_inputs.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/pod.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
@@ -56,12 +55,10 @@ struct Smoother {
   Smoother(const model::SmootherKernel& kernel, const MatrixD& z) : covariance(kernel.matrix(z, z)) {
     MatrixXd k = covariance;
     k.diagonal().array() += kernel.noise;
-    const Eigen::LLT<MatrixXd> factor(k);
-    if (factor.info() != Eigen::Success)
-      throw NumericalError("kernel smoother: the covariance is not positive definite");
-    const MatrixXd identity = MatrixXd::Identity(k.rows(), k.cols());
-    precision = factor.solve(identity);
-    inverse_factor = factor.matrixL().solve(identity);
+    const math::Cholesky factor(k);
+    if (!factor.succeeded()) throw NumericalError("kernel smoother: the covariance is not positive definite");
+    precision = factor.inverse();
+    inverse_factor = factor.inverse_factor();
   }
 
   /// Rows predict each case from the others: I - diag(P)^-1 P.
@@ -106,8 +103,9 @@ void KernelMethod::make_modes(SymmetryPart& part, const Smoother& smoother, cons
                               std::size_t most_modes, double may_drop) {
   const MatrixXd gram = cross_gram(shrunk, shrunk);
   const MatrixXd fitted = smoother.covariance * smoother.precision;  // H
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(fitted * gram * fitted.transpose());
-  const VectorXd energies = solver.eigenvalues().reverse().cwiseMax(0);
+  const MatrixD fitted_gram = fitted * gram * fitted.transpose();
+  const math::SymmetricEigen eigen = math::symmetric_eigen(fitted_gram);
+  const VectorXd energies = eigen.values.reverse().cwiseMax(0);
   const double total = energies.sum();
   Index n = 0;
   double left = total;
@@ -115,7 +113,7 @@ void KernelMethod::make_modes(SymmetryPart& part, const Smoother& smoother, cons
          left > may_drop) {
     left -= energies[n++];
   }
-  const MatrixXd directions = solver.eigenvectors().rowwise().reverse().leftCols(n) *
+  const MatrixXd directions = eigen.vectors.rowwise().reverse().leftCols(n) *
                               energies.head(n).cwiseSqrt().cwiseInverse().asDiagonal();
   const MatrixXd basis = directions.transpose() * fitted;  // modes = basis * shrunk
   const auto rows = math::all_rows(static_cast<std::size_t>(shrunk.rows()));

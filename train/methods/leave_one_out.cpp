@@ -1,10 +1,10 @@
 #include "leave_one_out.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
 #include "elrom/math/kernel.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/optimise.hpp"
 
 namespace elrom::methods {
@@ -111,12 +111,11 @@ constexpr math::MinimiseOptions search{
 }  // namespace
 
 double leave_one_out_error(const MatrixXd& covariance, double noise, const MatrixXd& gram, MatrixXd* slope) {
-  const Index n = covariance.rows();
   MatrixXd k = covariance;
   k.diagonal().array() += noise;
-  const Eigen::LLT<MatrixXd> factor(k);
-  if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
-  const MatrixXd p = factor.solve(MatrixXd::Identity(n, n));
+  const math::Cholesky factor(k);
+  if (!factor.succeeded()) return std::numeric_limits<double>::infinity();
+  const MatrixXd p = factor.inverse();
   const MatrixXd q = p * gram * p;
   const VectorXd weight = p.diagonal().array().square().inverse();
   if (slope != nullptr) {

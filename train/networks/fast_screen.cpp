@@ -6,12 +6,12 @@
 #include "fast_screen.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/networks/screening.hpp"
 
 namespace elrom::networks {
@@ -72,9 +72,9 @@ Basis diagonalise(const MatrixF& features, int n_threads, const std::stop_token&
         gram.middleCols(first, width).noalias() = wide.transpose() * wide.middleCols(first, width);
       },
       stop);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
-  const Eigen::MatrixXf vectors = solver.eigenvectors().cast<float>();
-  Basis basis{MatrixF(features.rows(), n), solver.eigenvalues().cwiseMax(0.0).cast<float>()};
+  const math::SymmetricEigen eigen = math::symmetric_eigen(gram);
+  const Eigen::MatrixXf vectors = eigen.vectors.cast<float>();
+  Basis basis{MatrixF(features.rows(), n), eigen.values.cwiseMax(0.0).cast<float>()};
   base::parallel_for(
       n_blocks, n_threads,
       [&](std::size_t i, int) {

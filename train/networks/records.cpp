@@ -1,12 +1,12 @@
 #include "elrom/networks/records.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
 #include "elrom/math/gaussian_process.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/ridge.hpp"
 #include "elrom/math/standardiser.hpp"
 
@@ -171,10 +171,9 @@ void fill(const ScreeningData& records, const Band& band, Part part, MatrixF& in
 /// The first few, with the square root of their energy as length, (n_cases, n_components).
 Eigen::MatrixXd principal_components(const MatrixF& values) {
   const Eigen::MatrixXd centred = (values.rowwise() - values.colwise().mean()).cast<double>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centred * centred.transpose());
+  const math::SymmetricEigen eigen = math::symmetric_eigen(centred * centred.transpose());
   const auto n = std::min(n_components, centred.rows());
-  return solver.eigenvectors().rightCols(n) *
-         solver.eigenvalues().tail(n).cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return eigen.vectors.rightCols(n) * eigen.values.tail(n).cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 /// 1 for the strongest input, at least `least_relevance`.

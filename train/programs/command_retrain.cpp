@@ -40,10 +40,9 @@ int run_retrain(const RetrainArguments& arguments) {
 }  // namespace
 
 void add_retrain(CLI::App& app, Work& run) {
-  auto* command =
-      app.add_subcommand("retrain",
-                         "take new cases of the store into an existing study; replaces model.elrom "
-                         "only when the new model is not worse");
+  auto* command = app.add_subcommand("retrain",
+                                     R"(take new cases of the store into an existing study;
+replaces model.elrom only when the new model is not worse)");
   auto arguments = std::make_shared<RetrainArguments>();
   arguments->study.add_to(*command);
   command->add_option("--json", arguments->json, "write the figures to this file");

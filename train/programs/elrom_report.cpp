@@ -151,7 +151,8 @@ void add_cost(CLI::App& app, Arguments& arguments) {
 
 int run(int argc, char** argv) {
   CLI::App app{
-      "Reports on trained ELROM studies.\nExit status: 2 usage, 3 input, 5 numerical, 130 interrupted."};
+      R"(Reports on trained ELROM studies.
+Exit status: 2 usage, 3 input, 5 numerical, 130 interrupted.)"};
   app.set_version_flag("--version", program_version());
   app.require_subcommand(1);
   Arguments arguments;

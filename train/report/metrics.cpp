@@ -1,11 +1,11 @@
 #include "elrom/report/metrics.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "elrom/base/error.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/statistics.hpp"
 
 namespace elrom::report {
@@ -159,16 +159,14 @@ CaseSpan::CaseSpan(const MatrixF& values) {
   centred.rowwise() -= mean;
   // Modes by the small Gram matrix (method of snapshots, Sirovich
   // 1987); tiny eigenvalues are rounding, not modes.
-  const Eigen::MatrixXd gram = centred * centred.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
+  const math::SymmetricEigen eigen = math::symmetric_eigen(centred * centred.transpose());
   constexpr double negligible = 1e-10;
-  const double floor = negligible * std::max(0.0, solver.eigenvalues().maxCoeff());
-  const auto n_modes = static_cast<Eigen::Index>((solver.eigenvalues().array() > floor).count());
+  const double floor = negligible * std::max(0.0, eigen.values.maxCoeff());
+  const auto n_modes = static_cast<Eigen::Index>((eigen.values.array() > floor).count());
   modes_.resize(n_modes, centred.cols());
   for (Eigen::Index k = 0; k < n_modes; ++k) {
     const Eigen::Index column = n_cases - 1 - k;  // eigenvalues ascend
-    modes_.row(k) =
-        solver.eigenvectors().col(column).transpose() * centred / std::sqrt(solver.eigenvalues()(column));
+    modes_.row(k) = eigen.vectors.col(column).transpose() * centred / std::sqrt(eigen.values(column));
   }
 }
 

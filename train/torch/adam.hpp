@@ -2,7 +2,7 @@
 // Adam with decoupled weight decay on one flat parameter tensor (Kingma & Ba 2015, algorithm 1; Loshchilov &
 // Hutter 2019, algorithm 2): beta 0.9 and 0.999, epsilon 1e-8. Loops of our own take one sweep over memory.
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 

@@ -3,7 +3,7 @@
 // and a step allocates nothing. Parameters lie in one flat tensor: weights (n_out, n_in) then bias (n_out),
 // layer after layer.
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 #include <vector>

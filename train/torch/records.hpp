@@ -1,7 +1,7 @@
 #pragma once
 // The records of a training problem as LibTorch sees them, and how batches are taken from them.
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 #include <span>

@@ -1,5 +1,7 @@
 #include "elrom/torch/trainer.hpp"
 
+#include <torch/cuda.h>
+
 #include <chrono>
 #include <limits>
 

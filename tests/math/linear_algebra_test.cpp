@@ -1,0 +1,84 @@
+#include "elrom/math/linear_algebra.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "elrom/base/random.hpp"
+
+namespace elrom::math {
+namespace {
+
+using Eigen::MatrixXd;
+
+// Large enough for Eigen's blocked ways.
+MatrixXd random_positive(Eigen::Index n) {
+  base::Random random(base::Seed(5).derive("linear algebra"));
+  MatrixXd a(n, n);
+  for (double& value : a.reshaped()) value = random.normal();
+  return a * a.transpose() + MatrixXd::Identity(n, n);
+}
+
+// The upper triangle holds what nobody may read.
+MatrixXd lower_only(const MatrixXd& matrix) {
+  MatrixXd lower = MatrixXd::Constant(matrix.rows(), matrix.cols(), std::numeric_limits<double>::quiet_NaN());
+  lower.triangularView<Eigen::Lower>() = matrix;
+  return lower;
+}
+
+TEST(SymmetricEigen, KnowsATwoByTwoByHand) {
+  const SymmetricEigen eigen = symmetric_eigen((MatrixXd(2, 2) << 2, 1, 1, 2).finished());
+
+  ASSERT_TRUE(eigen.converged);
+  EXPECT_NEAR(eigen.values[0], 1, 1e-14);
+  EXPECT_NEAR(eigen.values[1], 3, 1e-14);
+  EXPECT_NEAR(std::abs(eigen.vectors.col(0).dot(Eigen::Vector2d(1, -1))), std::sqrt(2), 1e-14);
+  EXPECT_NEAR(std::abs(eigen.vectors.col(1).dot(Eigen::Vector2d(1, 1))), std::sqrt(2), 1e-14);
+}
+
+TEST(SymmetricEigen, VectorsAreOrthonormalAndGiveTheMatrixBack) {
+  const MatrixXd a = random_positive(70);
+
+  const SymmetricEigen eigen = symmetric_eigen(lower_only(a));
+
+  const MatrixXd back = eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose();
+  EXPECT_TRUE(back.isApprox(a, 1e-12));
+  EXPECT_TRUE((eigen.vectors.transpose() * eigen.vectors).isIdentity(1e-12));
+  for (Eigen::Index i = 1; i < a.rows(); ++i) EXPECT_LE(eigen.values[i - 1], eigen.values[i]);
+}
+
+TEST(SymmetricEigen, SaysWhenTheMatrixIsNotFinite) {
+  MatrixXd a = random_positive(5);
+  a(3, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(symmetric_eigen(a).converged);
+}
+
+TEST(Cholesky, KnowsATwoByTwoByHand) {
+  // L = [2 0; 1 3]
+  const Cholesky factor((MatrixXd(2, 2) << 4, 2, 2, 10).finished());
+
+  ASSERT_TRUE(factor.succeeded());
+  EXPECT_TRUE(
+      factor.inverse_factor().isApprox((MatrixXd(2, 2) << 0.5, 0, -1.0 / 6, 1.0 / 3).finished(), 1e-14));
+  EXPECT_TRUE(factor.inverse().isApprox((MatrixXd(2, 2) << 10, -2, -2, 4).finished() / 36, 1e-14));
+  EXPECT_NEAR(factor.log_determinant(), std::log(36.0), 1e-14);
+}
+
+TEST(Cholesky, SolvesAndInverts) {
+  const MatrixXd k = random_positive(150), right = random_positive(150).leftCols(3);
+
+  const Cholesky factor(lower_only(k));
+
+  ASSERT_TRUE(factor.succeeded());
+  EXPECT_TRUE((k * factor.solve(right)).isApprox(right, 1e-11));
+  EXPECT_TRUE((k * factor.inverse()).isIdentity(1e-9));
+  EXPECT_TRUE((factor.inverse_factor() * k * factor.inverse_factor().transpose()).isIdentity(1e-9));
+}
+
+TEST(Cholesky, RefusesWhatIsNotPositiveDefinite) {
+  EXPECT_FALSE(Cholesky((MatrixXd(2, 2) << 1, 2, 2, 1).finished()).succeeded());
+}
+
+}  // namespace
+}  // namespace elrom::math
