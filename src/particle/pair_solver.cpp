@@ -187,7 +187,8 @@ class Group {
     state_ = begin_;
     const Mask there =
         Lane([](auto lane) { return static_cast<double>(lane); }) < static_cast<double>(pairs.size() - first);
-    active_ = there && (overlap > 0 || dot(load_vector(pairs.normal, first), begin_.velocity) < 0);
+    active_ =
+        there && c_.step > 0 && (overlap > 0 || dot(load_vector(pairs.normal, first), begin_.velocity) < 0);
     greatest_ = select(active_, overlap, Lane(0.0));
     duration_ = 0.0;
   }
@@ -245,9 +246,11 @@ class Group {
     Lane share = 1.0;
     if (any_of(parts)) share = select(parts, root(now, rate_now, then, rate_then), share);
     const State end = any_of(parts) ? contact_.advance(state_, share * step) : next;
-    state_ = choose(active_, end, state_);
+    // Numbers too small or too large to calculate with: the pair is left as it was.
+    const Mask lost = active_ && !(then > 0) && !parts;
+    state_ = choose(lost, begin_, choose(active_, end, state_));
     duration_ = select(active_, duration_ + share * step, duration_);
-    active_ = active_ && !parts;
+    active_ = active_ && then > 0;
   }
 
   Constants c_;

@@ -267,5 +267,15 @@ TEST(PairSolver, HardCasesEndInNumbers) {
         }
 }
 
+// Masses that are no normal numbers: at once, and without a change.
+TEST(PairSolver, PairsBeyondArithmeticAreLeftAlone) {
+  const auto pairs = one_pair({1, 0.5, 0}, {0, 0, 0}, {1, 0, 0}, 315e-6, 315e-6, 1e-310, 1e-310);
+  for (const auto& c : cases()) {
+    const auto parting = collide(pairs, c.law);
+    EXPECT_TRUE(parting.after.velocity_1.allFinite() && parting.after.spin_2.allFinite()) << c.name;
+    EXPECT_LT(parting.pair_steps, 1000) << c.name;
+  }
+}
+
 }  // namespace
 }  // namespace elrom::particle
