@@ -1,4 +1,5 @@
-// elrom-report: how good a study's model is, what more cases would buy, and what accuracy costs.
+// elrom-report: how good a study's model is, what more cases would buy, and what accuracy costs; how good collision
+// models are.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/report/accuracy.hpp"
+#include "elrom/report/collisions.hpp"
 #include "elrom/report/cost.hpp"
 #include "elrom/report/learning_curve.hpp"
 #include "elrom/report/page.hpp"
@@ -23,10 +25,11 @@ using namespace elrom;
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::vector<std::string> studies, against, fields;
-  std::string store, json, csv, html, method;
+  std::vector<std::string> studies, against, fields, models;
+  std::string store, json, csv, html, method, collisions;
   int threads = 0, points = 5, repeats = 3;
   std::uint64_t seed = 1;
+  std::size_t calls = 1'000'000;
   bool small = false, v1_v2 = false, quiet = false, no_peers = false;
 
   [[nodiscard]] int n_threads() const { return threads > 0 ? threads : base::available_threads(); }
@@ -86,6 +89,16 @@ int run_cost(const Arguments& arguments, Log& log) {
   fmt::print("{}", report::terminal_table(cost));
   write(arguments.json.empty() ? options.studies.front() / "cost.json" : fs::path(arguments.json),
         report::to_json(cost), log);
+  return 0;
+}
+
+int run_collisions(const Arguments& arguments, Log& log) {
+  report::CollisionReportOptions options{.set = arguments.collisions, .n_calls = arguments.calls};
+  options.models.assign(arguments.models.begin(), arguments.models.end());
+  const auto report = report::collision_report(options, log, base::interrupt_token());
+  fmt::print("{}", report::terminal_table(report));
+  if (!arguments.json.empty()) write(arguments.json, report::to_json(report), log);
+  if (!arguments.html.empty()) write(arguments.html, report::html_page(report), log);
   return 0;
 }
 
@@ -149,9 +162,26 @@ void add_cost(CLI::App& app, Arguments& arguments) {
   add_common(command, arguments);
 }
 
+void add_collisions(CLI::App& app, Arguments& arguments) {
+  auto& command = *app.add_subcommand(
+      "collisions", "Collision models beside each other: errors, momentum and energy, what accuracy costs");
+  command.add_option("set", arguments.collisions, "a set made by elrom-data collisions; its last 5 % judge")
+      ->required();
+  command.add_option("models", arguments.models, "collision models (.elrom) made by elrom-train collisions")
+      ->required();
+  command.add_option("--json", arguments.json, "write all figures as JSON");
+  command.add_option("--html", arguments.html, "write the page: one file that opens offline");
+  command.add_option("--calls", arguments.calls, "calls of each model that its speed is measured by")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--small", arguments.small,
+                   "accepted for scripts: this command ends within a minute anyway");
+  command.add_flag("--quiet", arguments.quiet, "no progress, only results and warnings");
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
-      R"(Reports on trained ELROM studies.
+      R"(Reports on trained ELROM studies and collision models.
 Exit status: 2 usage, 3 input, 5 numerical, 130 interrupted.)"};
   app.set_version_flag("--version", program_version());
   app.require_subcommand(1);
@@ -159,6 +189,7 @@ Exit status: 2 usage, 3 input, 5 numerical, 130 interrupted.)"};
   add_accuracy(app, arguments);
   add_learning_curve(app, arguments);
   add_cost(app, arguments);
+  add_collisions(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -167,6 +198,7 @@ Exit status: 2 usage, 3 input, 5 numerical, 130 interrupted.)"};
   const auto log = make_console_log(arguments.quiet ? Level::warning : Level::info);
   if (app.got_subcommand("accuracy")) return run_accuracy(arguments, *log);
   if (app.got_subcommand("learning-curve")) return run_learning_curve(arguments, *log);
+  if (app.got_subcommand("collisions")) return run_collisions(arguments, *log);
   return run_cost(arguments, *log);
 }
 

@@ -23,10 +23,7 @@ std::string navigation(bool with_choice, const PageExtras& extras) {
   if (extras.learning_curve) links += "<a href=\"#learning\">More cases</a>";
   if (extras.cost) links += "<a href=\"#cost\">Cost</a>";
   if (!extras.searches.empty()) links += "<a href=\"#search\">Search</a>";
-  return fmt::format(
-      "<nav><div class=\"bar\"><b>ELROM</b>{}<button id=\"theme\" type=\"button\">Light / "
-      "dark</button></div></nav>",
-      links);
+  return links;
 }
 
 std::string opening(const AccuracyReport& report) {
@@ -55,30 +52,43 @@ std::string section(std::string_view id, std::string_view title, std::string_vie
                      body);
 }
 
-std::string html_page(const AccuracyReport& report, const PageExtras& extras) {
-  check(report.figures.has_value(), "html_page: the report was made without figures");
-  const auto choice = choice_section(report);
+std::string figure(const std::string& caption, const std::string& drawing) {
+  return fmt::format("<figure><figcaption>{}</figcaption>{}</figure>", escape(caption), drawing);
+}
+
+std::string whole_page(const std::string& title, const std::string& links, const std::string& content) {
   std::string page = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, "
-      "initial-scale=1\"><meta name=\"generator\" content=\"{}\"><title>ELROM accuracy: {}</title><style>",
-      escape(program_version()), escape(report.study.name));
+      "initial-scale=1\"><meta name=\"generator\" content=\"{}\"><title>{}</title><style>",
+      escape(program_version()), escape(title));
   page += page_style();
-  page += "</style></head><body>" + navigation(!choice.empty(), extras) + "<main>" + opening(report);
-  page += section("table", "Scores by field",
-                  "Every method on the same split and the same cells. The dot marks the best in each row.",
-                  score_tables(report));
-  page += cut_section(report) + profile_section(report) + load_section(report) + budget_section(report);
-  page += coverage_section(report) + error_section(report) + submodel_table(report) +
-          validity_section(report) + choice;
-  if (extras.learning_curve) page += learning_section(*extras.learning_curve);
-  if (extras.cost) page += cost_section(*extras.cost);
-  if (!extras.searches.empty()) page += search_section(extras.searches);
-  page += provenance(report);
-  page += fmt::format("<footer>{} &middot; {}</footer></main><script>", escape(program_version()),
-                      escape(report.created));
+  page += fmt::format(
+      "</style></head><body><nav><div class=\"bar\"><b>ELROM</b>{}<button id=\"theme\" type=\"button\">Light / "
+      "dark</button></div></nav><main>{}</main><script>",
+      links, content);
   page += page_script();
   return page + "</script></body></html>\n";
+}
+
+std::string html_page(const AccuracyReport& report, const PageExtras& extras) {
+  check(report.figures.has_value(), "html_page: the report was made without figures");
+  const auto choice = choice_section(report);
+  std::string content =
+      opening(report) +
+      section("table", "Scores by field",
+              "Every method on the same split and the same cells. The dot marks the best in each row.",
+              score_tables(report));
+  content += cut_section(report) + profile_section(report) + load_section(report) + budget_section(report);
+  content += coverage_section(report) + error_section(report) + submodel_table(report) +
+             validity_section(report) + choice;
+  if (extras.learning_curve) content += learning_section(*extras.learning_curve);
+  if (extras.cost) content += cost_section(*extras.cost);
+  if (!extras.searches.empty()) content += search_section(extras.searches);
+  content += provenance(report);
+  content +=
+      fmt::format("<footer>{} &middot; {}</footer>", escape(program_version()), escape(report.created));
+  return whole_page("ELROM accuracy: " + report.study.name, navigation(!choice.empty(), extras), content);
 }
 
 PageExtras find_extras(const StudyFiles& study) {

@@ -16,10 +16,6 @@ namespace {
 
 using svg::escape;
 
-std::string figure(const std::string& caption, const std::string& drawing) {
-  return fmt::format("<figure><figcaption>{}</figcaption>{}</figure>", escape(caption), drawing);
-}
-
 std::string with_unit(const std::string& name, const std::string& unit) {
   return unit == "1" || unit.empty() ? name : name + " [" + unit + "]";
 }
@@ -124,20 +120,7 @@ std::string parity_chart(const FieldAccuracy& field, const ParityMap& map) {
   const auto unit = shown_unit(field.info.name, field.info.unit);
   const svg::Axis x{with_unit("EL3D", unit.symbol), map.low * unit.factor, map.high * unit.factor};
   const svg::Axis y{with_unit("predicted", unit.symbol), x.low, x.high};
-  svg::Chart chart({.width = 320, .height = 300, .left = 62}, x, y, "Parity of " + field.info.name);
-  const double most = static_cast<double>(*std::max_element(map.counts.begin(), map.counts.end()));
-  const double step = (x.high - x.low) / static_cast<double>(map.n_bins);
-  for (std::size_t i = 0; i < map.n_bins; ++i)
-    for (std::size_t j = 0; j < map.n_bins; ++j) {
-      const auto count = map.counts[i * map.n_bins + j];
-      if (count == 0) continue;
-      const double shade = 0.12 + 0.88 * std::log1p(static_cast<double>(count)) / std::log1p(most);
-      const double left = x.low + step * static_cast<double>(i), low = x.low + step * static_cast<double>(j);
-      chart.box(left, left + step, low, low + step, "s0", "", shade);
-    }
-  const std::vector<double> ends{x.low, x.high};
-  chart.line(ends, ends, "rule", "predicted = EL3D");
-  return chart.text();
+  return parity_drawing(map, x, y, "s0", "Parity of " + field.info.name);
 }
 
 // A histogram as a step line: share of cells per bin, in per cent.
@@ -212,6 +195,24 @@ std::string profile_chart(const AccuracyReport& report, std::size_t f, std::size
 }
 
 }  // namespace
+
+std::string parity_drawing(const ParityMap& map, const svg::Axis& x, const svg::Axis& y,
+                           const std::string& css_class, const std::string& title) {
+  svg::Chart chart({.width = 320, .height = 300, .left = 62}, x, y, title);
+  const double most = static_cast<double>(*std::max_element(map.counts.begin(), map.counts.end()));
+  const double step = (x.high - x.low) / static_cast<double>(map.n_bins);
+  for (std::size_t i = 0; i < map.n_bins; ++i)
+    for (std::size_t j = 0; j < map.n_bins; ++j) {
+      const auto count = map.counts[i * map.n_bins + j];
+      if (count == 0) continue;
+      const double shade = 0.12 + 0.88 * std::log1p(static_cast<double>(count)) / std::log1p(most);
+      const double left = x.low + step * static_cast<double>(i), low = x.low + step * static_cast<double>(j);
+      chart.box(left, left + step, low, low + step, css_class, "", shade);
+    }
+  const std::vector<double> ends{x.low, x.high};
+  chart.line(ends, ends, "rule", "equal");
+  return chart.text();
+}
 
 std::string series_class(const AccuracyReport& report, std::size_t method) {
   if (method == 0) return "s0";

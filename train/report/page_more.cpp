@@ -17,10 +17,6 @@ namespace {
 
 using svg::escape;
 
-std::string figure(const std::string& caption, const std::string& drawing) {
-  return fmt::format("<figure><figcaption>{}</figcaption>{}</figure>", escape(caption), drawing);
-}
-
 std::string cost_chart(const CostReport& cost, const std::string& label,
                        const std::function<double(const CostPoint&)>& time) {
   std::vector<double> times, errors;

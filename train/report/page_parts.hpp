@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "elrom/report/page.hpp"
+#include "svg.hpp"
 
 namespace elrom::report {
 
@@ -14,6 +15,14 @@ namespace elrom::report {
 [[nodiscard]] std::string method_legend(const AccuracyReport& report, bool with_truth);
 [[nodiscard]] std::string section(std::string_view id, std::string_view title, std::string_view lead,
                                   std::string_view body);
+
+[[nodiscard]] std::string figure(const std::string& caption, const std::string& drawing);
+/// A page that opens offline around these links and the content of <main>.
+[[nodiscard]] std::string whole_page(const std::string& title, const std::string& links,
+                                     const std::string& content);
+/// Truth to the right, prediction upwards; darker: more. The axes are the map's, in the unit that is shown.
+[[nodiscard]] std::string parity_drawing(const ParityMap& map, const svg::Axis& x, const svg::Axis& y,
+                                         const std::string& css_class, const std::string& title);
 
 [[nodiscard]] std::string key_figures(const AccuracyReport& report);
 [[nodiscard]] std::string score_tables(const AccuracyReport& report);

@@ -38,6 +38,8 @@ struct CollisionErrors {
 /// @param count at least one pair
 [[nodiscard]] CollisionErrors errors_of(const CollisionModel& model, const CollisionSet& set,
                                         std::size_t first, std::size_t count);
+/// Processor time of one pair, s: these pairs block by block until n_calls are done, the quickest of five such runs.
+[[nodiscard]] double seconds_a_call(const CollisionModel& model, const Pairs& pairs, std::size_t n_calls);
 /// {"mae_m_per_s": [u, v, w], ...}
 [[nodiscard]] std::string to_json(const CollisionErrors& errors);
 

@@ -4,6 +4,8 @@
   const $ = (selector) => document.querySelector(selector);
   const all = (selector) => [...document.querySelectorAll(selector)];
 
+  let redraw = () => {};  // the cuts, where the page has them
+
   // Theme: follows the system until the reader chooses.
   const themeButton = $("#theme");
   const isDark = () => {
@@ -12,7 +14,7 @@
   };
   themeButton.addEventListener("click", () => {
     document.documentElement.dataset.theme = isDark() ? "light" : "dark";
-    draw();
+    redraw();
   });
 
   // Score tables: one is visible at a time.
@@ -247,5 +249,6 @@
   let pending = 0;
   addEventListener("resize", () => { cancelAnimationFrame(pending); pending = requestAnimationFrame(draw); });
   addEventListener("beforeprint", draw);
+  redraw = draw;
   draw();
 })();
