@@ -5,8 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-// nlohmann's library lets its names be found through these aliases alone. Members are named one by one: all of them would
-// bring the readers and writers of five binary formats along, which nobody uses and which cost more than the rest.
+// nlohmann's library lets its names be found through these aliases alone. Members are
+// named one by one: all of them would bring the readers and writers of five binary
+// formats along, which nobody uses and which cost more than the rest.
 #define ELROM_JSON_INSTANCES(DECLARED, Json)                                                 \
   DECLARED template class nlohmann::detail::parser<                                          \
       Json, nlohmann::detail::iterator_input_adapter<std::string::const_iterator>>;          \

@@ -28,8 +28,8 @@ struct Exchange {
   LaneVector moment;   ///< N s: sphere i gets the angular impulse r_i moment
 };
 
-/// Shortened to where it adds no energy, and none at all where the spheres do not close in; written for both spheres.
-/// A share s of it adds s (v . J + S . M) + s^2 (J^2 + 5/2 M^2) / (2 m12).
+/// Shortened to where it adds no energy, and none at all where the spheres do not close in; written for both
+/// spheres. A share s of it adds s (v . J + S . M) + s^2 (J^2 + 5/2 M^2) / (2 m12).
 void give(const Impact& impact, const Exchange& exchange, Impulses& impulses, std::size_t first);
 
 }  // namespace elrom::particle

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t block_size = 512;  // pairs a thread takes at a time
 
-// Of the relative motion: see the header. `place` counts from where the contact begins, so that an overlap of 1e-16 m
-// keeps its digits.
+// Of the relative motion: see the header. `place` counts from where the
+// contact begins, so that an overlap of 1e-16 m keeps its digits.
 struct State {
   LaneVector place, velocity, spin, spring;
 
@@ -39,7 +39,8 @@ struct Constants {
   Lane start_gap;    // R^2 - |start|^2
 };
 
-// Where a cubic through both ends of a step, with the rates given there, falls to zero; as a share of the step.
+// Where a cubic through both ends of a step, with the rates
+// given there, falls to zero; as a share of the step.
 Lane root(const Lane& value_0, const Lane& rate_0, const Lane& value_1, const Lane& rate_1) {
   Lane low = 0.0, high = 1.0;
   for (int i = 0; i < 40; ++i) {
@@ -123,13 +124,15 @@ class Contact {
     return select(size > most, most / size, Lane(1.0)) * force;
   }
 
-  // What is left of a spring's force that was there at the step's beginning, where sqrt(overlap) was `loaded`.
+  // What is left of a spring's force that was there at the
+  // step's beginning, where sqrt(overlap) was `loaded`.
   [[nodiscard]] static Lane kept(const Forces& f, const Lane& loaded) {
     if constexpr (law == LawKind::linear) return 1.0;
     return select(f.spring_power < loaded, f.spring_power / loaded, Lane(1.0));
   }
 
-  // `spring` within a step: the force as it was at `loaded`, so that its rate stays finite where spheres part.
+  // `spring` within a step: the force as it was at `loaded`, so
+  // that its rate stays finite where spheres part.
   [[nodiscard]] State derivative(const State& state, const Lane& loaded) const {
     const auto f = forces(state);
     State rate;
@@ -153,8 +156,8 @@ class Contact {
     return rate;
   }
 
-  // The spring lies across the normal, has lost what its stiffness lost, and slides where it would pull more than
-  // friction.
+  // The spring lies across the normal, has lost what its stiffness
+  // lost, and slides where it would pull more than friction.
   void settle_spring(State& after, const Lane& loaded) const {
     const auto f = forces(after);
     after.spring -= dot(after.spring, f.direction) * f.direction;
@@ -184,7 +187,8 @@ class Group {
     state_ = begin_;
     const Mask there =
         Lane([](auto lane) { return static_cast<double>(lane); }) < static_cast<double>(pairs.size() - first);
-    active_ = there && (overlap > 0 || dot(load_vector(pairs.normal, first), begin_.velocity) < 0);
+    active_ =
+        there && c_.step > 0 && (overlap > 0 || dot(load_vector(pairs.normal, first), begin_.velocity) < 0);
     greatest_ = select(active_, overlap, Lane(0.0));
     duration_ = 0.0;
   }
@@ -221,8 +225,8 @@ class Group {
   }
 
  private:
-  // Hertz's damper goes with the fourth root of the overlap, so steps are short where spheres begin to touch and
-  // where they part.
+  // Hertz's damper goes with the fourth root of the overlap, so steps are
+  // short where spheres begin to touch and where they part.
   [[nodiscard]] Lane step_now() const {
     if constexpr (law == LawKind::linear) return c_.step;
     const Lane rate = contact_.rate(state_);
@@ -242,9 +246,11 @@ class Group {
     Lane share = 1.0;
     if (any_of(parts)) share = select(parts, root(now, rate_now, then, rate_then), share);
     const State end = any_of(parts) ? contact_.advance(state_, share * step) : next;
-    state_ = choose(active_, end, state_);
+    // Numbers too small or too large to calculate with: the pair is left as it was.
+    const Mask lost = active_ && !(then > 0) && !parts;
+    state_ = choose(lost, begin_, choose(active_, end, state_));
     duration_ = select(active_, duration_ + share * step, duration_);
-    active_ = active_ && !parts;
+    active_ = active_ && then > 0;
   }
 
   Constants c_;
@@ -255,7 +261,8 @@ class Group {
   Lane greatest_, duration_;
 };
 
-// Step of a pair: a share of the contact's duration, of a straight path's through the overlap, and what the rules allow.
+// Step of a pair: a share of the contact's duration, of a straight
+// path's through the overlap, and what the rules allow.
 double step_of(const ContactLaw& law, const PairContact& contact, const Ball& one, const Ball& two,
                double closing, double speed_squared, double overlap, int steps_per_contact) {
   // An overlap at the start is worth the speed that its spring will give.

@@ -109,6 +109,51 @@ void kill_collisions(const Workshop& shop, std::size_t n, base::Random& random, 
   }
 }
 
+/// The learned numbers of a collision model; its texts hold the seconds it took.
+std::string tensors_of(const fs::path& model) {
+  base::Sha256 digest;
+  const auto file = io::TensorFile::open(model);
+  for (const auto& [name, tensor] : file.tensors()) {
+    digest.add(name);
+    digest.add(tensor.bytes());
+  }
+  return digest.hex();
+}
+
+/// Kills a search for trees' hyperparameters until it ends by itself, with the model of a run left alone.
+void kill_tree_searches(const Workshop& shop, std::size_t n, base::Random& random, Tally& tally) {
+  const auto set = shop.folder / "kill_learn.h5", whole = shop.folder / "learn_whole.elrom",
+             model = shop.folder / "learn_killed.elrom";
+  const auto command = [&](const fs::path& output) {
+    return std::vector<std::string>{shop.program("elrom-train"),
+                                    "collisions",
+                                    set.string(),
+                                    "--regressor",
+                                    "trees",
+                                    "--trials",
+                                    "10",
+                                    "--output",
+                                    output.string()};
+  };
+  const auto made = run(shop.collide_command(set, 6000));
+  if (made.status != 0) throw std::runtime_error("cannot collide: " + made.output);
+  const auto learned = run(command(whole));
+  if (learned.status == static_cast<int>(ExitStatus::not_built)) return;  // without XGBoost
+  if (learned.status != 0) throw std::runtime_error("cannot learn: " + learned.output);
+  const auto wanted = tensors_of(whole);
+  for (std::size_t n_kills = 0; n_kills < n;) {
+    fs::remove(model);
+    fs::remove(model.string() + ".trials.sqlite");
+    while (n_kills < n && kill_at_random(command(model), learned.seconds, random)) {
+      ++n_kills;
+      tally.count(!fs::exists(model) || tensors_of(model) == wanted, "collision model: a broken file");
+    }
+    const auto again = run(command(model));
+    tally.count(again.status == 0 && tensors_of(model) == wanted,
+                "collision model after kills: other trees than without, or none: " + again.output);
+  }
+}
+
 /// What every trial of a study's searches was worth.
 std::map<std::string, double> trials_of(const fs::path& study) {
   std::map<std::string, double> values;
@@ -201,6 +246,7 @@ Tally kills(const Workshop& workshop) {
   kill_trainings(workshop, workshop.times(100, 10), random, tally);
   kill_predictions(workshop, workshop.times(40, 6), random, tally);
   kill_collisions(workshop, workshop.times(60, 6), random, tally);
+  kill_tree_searches(workshop, workshop.times(40, 4), random, tally);
   return tally;
 }
 

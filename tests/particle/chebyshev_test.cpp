@@ -87,5 +87,18 @@ TEST(Chebyshev, RefusesWhatCannotBeEvaluated) {
   EXPECT_THROW(make(inputs, {0, 1}, 1, MatrixD::Ones(1, 1)), InputError);
 }
 
+// Constants: panel p, output o gives 10 p + o.
+TEST(Chebyshev, EachPanelHasItsOwnOutputs) {
+  MatrixD coefficients(6, 1);
+  coefficients << 0, 1, 10, 11, 20, 21;
+  const Chebyshev regressor({.n_inputs = 2, .n_outputs = 2, .degree_x = 0, .degree_y = 0}, {0, 1, 1.001, 3},
+                            {0, 0}, {3, 1}, coefficients);
+  Table inputs(3, 2), outputs(3, 2);
+  inputs << 0.999, 0, 1.0005, 0, 2.9, 0;
+  regressor.evaluate(inputs, outputs);
+  for (int panel = 0; panel < 3; ++panel)
+    for (int output = 0; output < 2; ++output) EXPECT_DOUBLE_EQ(outputs(panel, output), 10 * panel + output);
+}
+
 }  // namespace
 }  // namespace elrom::particle

@@ -97,5 +97,11 @@ TEST(ContactLaw, RefusesWhatNoMaterialHas) {
   expect_refused([] { ContactLaw{.kind = LawKind::hertz, .poisson_ratio = 0.7}.check(); }, "Poisson");
 }
 
+TEST(ContactLaw, SaysItselfInWords) {
+  EXPECT_EQ((ContactLaw{.friction = 0.3, .stiffness = 1.2e6}).text(), "linear, e 0.9, mu 0.3, 1.2e+06 N/m");
+  EXPECT_EQ((ContactLaw{.kind = LawKind::hertz, .restitution = 1}).text(),
+            "hertz, e 1, mu 0, E 1e+09 Pa, nu 0.3");
+}
+
 }  // namespace
 }  // namespace elrom::particle

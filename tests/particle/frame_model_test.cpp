@@ -174,5 +174,18 @@ TEST(FrameModel, RefusesARegressorOfAnotherSize) {
   EXPECT_THROW(FrameModel(rough, fits, NAN), InputError);
 }
 
+// 3 m/s towards each other, 4 m/s across: U = 5, angle 4 / 7; orbit 4 / 5 along the slip.
+TEST(FrameModel, RecordsHoldSpeedAngleAndOrbit) {
+  const auto pairs = one_pair({3, 0, 0}, {0, 4, 0}, {1, 0, 0});
+  const auto records = frame_records(pairs, collide(pairs, rough).after, rough, true);
+  EXPECT_NEAR(records.speed[0], 5, 1e-14);
+  EXPECT_NEAR(records.inputs(0, 0), 4.0 / 7, 1e-14);
+  EXPECT_NEAR(records.inputs(0, 2), 0.8, 1e-14);
+  EXPECT_NEAR(records.inputs(0, 3), 0, 1e-14);
+  // Of the second input's square: U sqrt(m12 / K) / R.
+  const double m12 = sphere_mass(315e-6, 1000) / 2;
+  EXPECT_NEAR(std::pow(records.inputs(0, 1), 2), 5 * std::sqrt(m12 / 1e6) / 315e-6, 1e-12);
+}
+
 }  // namespace
 }  // namespace elrom::particle

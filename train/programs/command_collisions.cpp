@@ -32,8 +32,8 @@ bool grows_trees(const surrogate::LearnSettings& settings) {
           settings.regressor == surrogate::RegressorKind::trees);
 }
 
-// The source's two ranges: pairs up to a tenth of the speed get trees of their own. Two-particle DEM makes them in less
-// than a second.
+// The source's two ranges: pairs up to a tenth of the speed get trees of
+// their own. Two-particle DEM makes them in less than a second.
 particle::CollisionSet slow_pairs(const Options& options, const particle::CollisionSet& set,
                                   const std::stop_token& stop) {
   if (!options.low.empty()) return particle::read_collisions(options.low);

@@ -1,7 +1,7 @@
 #pragma once
-// Decompositions of symmetric matrices, compiled once: a source that has Eigen's own templates compile them takes seconds
-// longer for each. Any unit. A call works in the caller's thread and shares nothing.
-// Golub & Van Loan, Matrix Computations, 4th ed.: Cholesky section 4.2.5, symmetric QR algorithm section 8.3.
+// Decompositions of symmetric matrices, compiled once: a source that has Eigen's own templates compile them
+// takes seconds longer for each. Any unit. A call works in the caller's thread and shares nothing. Golub &
+// Van Loan, Matrix Computations, 4th ed.: Cholesky section 4.2.5, symmetric QR algorithm section 8.3.
 
 #include <Eigen/Core>
 

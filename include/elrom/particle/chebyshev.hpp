@@ -4,10 +4,10 @@
 //
 //   f(x, y, q) = sum over i, j, l of C_ijl T_i(x in its panel) T_j(y) m_l(q)
 //
-// Of two inputs there is one m = 1. Of five (frame_model.hpp) q is the orbit, which turns normal and slip in first
-// and second order; a collision and its mirror image in the plane of normal and slip must agree, so the first
-// three outputs have m = 1, q1, q1^2, q2^2, q2 q3, and the other two m = q2, q1 q2, q1 q3.
-// Values outside the fitted range of an input count as its nearest end.
+// Of two inputs there is one m = 1. Of five (frame_model.hpp) q is the orbit, which turns normal and slip in
+// first and second order; a collision and its mirror image in the plane of normal and slip must agree, so the
+// first three outputs have m = 1, q1, q1^2, q2^2, q2 q3, and the other two m = q2, q1 q2, q1 q3. Values
+// outside the fitted range of an input count as its nearest end.
 
 #include <array>
 #include <cstdint>
@@ -29,7 +29,8 @@ class Chebyshev final : public Regressor {
   };
   /// @param edges of the panels in x, rising, (panels + 1)
   /// @param low, high of each input
-  /// @param coefficients (panels x rows, terms): rows of an output's monomials one after the other; terms with j fastest
+  /// @param coefficients (panels x rows, terms): rows of an output's
+  /// monomials one after the other; terms with j fastest
   /// @throws InputError for sizes that do not fit, edges that do not rise, values that are not finite
   Chebyshev(const Shape& shape, std::vector<double> edges, std::vector<double> low, std::vector<double> high,
             MatrixD coefficients);

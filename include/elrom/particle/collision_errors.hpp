@@ -32,7 +32,8 @@ struct CollisionErrors {
 
 /// What the model makes of each pair.
 [[nodiscard]] Motion motion_after(const CollisionModel& model, const Pairs& pairs);
-/// |error of the velocity| / |velocity after| of all spheres, those of number 1 first; without those that rest afterwards.
+/// |error of the velocity| / |velocity after| of all spheres, those of number 1 first; without those that rest
+/// afterwards.
 [[nodiscard]] std::vector<double> relative_errors(const Motion& model, const Motion& truth);
 /// @param count at least one pair
 [[nodiscard]] CollisionErrors errors_of(const CollisionModel& model, const CollisionSet& set,

@@ -43,7 +43,8 @@ class CollisionModel {
   [[nodiscard]] virtual SurrogateKind kind() const = 0;
   /// For people: "frame, chebyshev".
   [[nodiscard]] virtual std::string text() const = 0;
-  /// Pairs that part, or whose numbers are not finite, get none. @param impulses overwritten, and sized to the pairs
+  /// Pairs that part, or whose numbers are not finite, get none.
+  /// @param impulses overwritten, and sized to the pairs
   virtual void impulses(const Pairs& pairs, Impulses& impulses) const = 0;
   /// Its tensors; the bundle adds law and protocol.
   virtual void write(io::TensorFile& file) const = 0;
@@ -52,7 +53,8 @@ class CollisionModel {
 /// The motion that these impulses leave.
 [[nodiscard]] Motion apply(const Pairs& pairs, const Impulses& impulses);
 
-/// A model with what it was learned from: the file `collision.elrom` (data/FORMATS.md, kind "elrom-collision").
+/// A model with what it was learned from: the file
+/// `collision.elrom` (data/FORMATS.md, kind "elrom-collision").
 struct CollisionBundle {
   std::shared_ptr<const CollisionModel> model;
   Protocol protocol;

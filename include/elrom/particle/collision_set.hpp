@@ -1,6 +1,6 @@
 #pragma once
-// A set of collisions: what was drawn, what came out, by which law. The file `collisions.h5` (data/FORMATS.md,
-// kind "elrom-collisions").
+// A set of collisions: what was drawn, what came out, by which law. The file `collisions.h5`
+// (data/FORMATS.md, kind "elrom-collisions").
 
 #include <cstdint>
 #include <filesystem>
@@ -39,7 +39,8 @@ struct CollisionSet {
 
 /// @throws SystemError when the disk does not take it
 void write_collisions(const std::filesystem::path& path, const CollisionSet& set);
-/// @throws InputError for another kind, a newer major version, shapes that do not fit, values that are not finite
+/// @throws InputError for another kind, a newer major version,
+/// shapes that do not fit, values that are not finite
 [[nodiscard]] CollisionSet read_collisions(const std::filesystem::path& path);
 
 }  // namespace elrom::particle

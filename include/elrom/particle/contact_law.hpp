@@ -19,7 +19,8 @@ enum class LawKind { linear, hertz };
 inline constexpr base::EnumNames<LawKind, 2> law_names{
     "contact law", {{LawKind::linear, "linear"}, {LawKind::hertz, "hertz"}}};
 
-/// Two spheres of one material. A law of kind linear needs `stiffness`, one of kind hertz the elastic constants.
+/// Two spheres of one material. A law of kind linear needs
+/// `stiffness`, one of kind hertz the elastic constants.
 struct ContactLaw {
   LawKind kind = LawKind::linear;
   double restitution = 0.9;  ///< e of the normal velocity, 0 to 1
@@ -45,9 +46,10 @@ struct Ball {
 
 /// The law between two given spheres.
 ///
-/// Force on sphere 2 along the normal: stiffness d^p + damping d^q d', with the overlap d and its rate d';
-/// linear: p = 1, q = 0; Hertz: p = 3/2, q = 1/4. Tangential spring: tangential_stiffness d^s, s = 0 or 1/2;
-/// its damper: tangential_damping d^q. A restitution below 1e-6 counts as 1e-6: a contact with e = 0 has no end.
+/// Force on sphere 2 along the normal: stiffness d^p + damping d^q d', with the overlap d
+/// and its rate d'; linear: p = 1, q = 0; Hertz: p = 3/2, q = 1/4. Tangential spring:
+/// tangential_stiffness d^s, s = 0 or 1/2; its damper: tangential_damping d^q. A
+/// restitution below 1e-6 counts as 1e-6: a contact with e = 0 has no end.
 struct PairContact {
   PairContact(const ContactLaw& law, const Ball& one, const Ball& two);
 
@@ -56,11 +58,11 @@ struct PairContact {
   double reduced_mass;  ///< m12, kg
   double distance;      ///< R = r1 + r2, m
   double stiffness;     ///< K; Hertz: 4/3 E* sqrt(R*), R* = r1 r2 / (r1 + r2)
-  /// Linear: -2 m12 ln(e) / tau. Hertz: sqrt(5) b sqrt(m12 K), b = -ln e / sqrt(pi^2 + ln^2 e), which gives e at any
-  /// speed (Antypov & Elliott 2011).
+  /// Linear: -2 m12 ln(e) / tau. Hertz: sqrt(5) b sqrt(m12 K), b = -ln e / sqrt(pi^2 + ln^2 e), which gives e
+  /// at any speed (Antypov & Elliott 2011).
   double damping;
-  /// Linear: so that a contact that sticks turns the slip round by its restitution in the time tau (2/7 K where
-  /// both restitutions are equal). Hertz: 8 G* sqrt(R*) (Mindlin).
+  /// Linear: so that a contact that sticks turns the slip round by its restitution in the time tau (2/7 K
+  /// where both restitutions are equal). Hertz: 8 G* sqrt(R*) (Mindlin).
   double tangential_stiffness;
   double tangential_damping;
 
@@ -75,11 +77,12 @@ struct PairContact {
   [[nodiscard]] double tangent_stiffness(double overlap) const;
 };
 
-/// Stiffness, N/m, at which a central collision at this relative speed overlaps by this share of the smaller diameter.
+/// Stiffness, N/m, at which a central collision at this relative
+/// speed overlaps by this share of the smaller diameter.
 [[nodiscard]] double stiffness_for_overlap(double share, double speed, const Ball& one, const Ball& two);
 
-/// Times that bound the step of an explicit simulation, s. What a law does not know (a linear one has no moduli) is
-/// infinite.
+/// Times that bound the step of an explicit simulation, s. What a
+/// law does not know (a linear one has no moduli) is infinite.
 struct StepTimes {
   double rayleigh;  ///< pi r sqrt(rho / G) / (0.1631 nu + 0.8766), the smaller of the two
   double hertz;     ///< 2.87 (m12^2 / (R* E*^2 v))^0.2

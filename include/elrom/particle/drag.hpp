@@ -10,7 +10,8 @@ struct Gas {
   double viscosity = 1.84e-5;  ///< Pa s
 };
 
-/// Drag coefficient, 1: 24/Re (1 + 0.15 Re^0.687) below Re = 1000, 0.44 above (Schiller & Naumann 1933).
+/// Drag coefficient: 24/Re (1 + 0.15 Re^0.687) below Re = 1000, 0.44 above
+/// (Schiller & Naumann 1933).
 [[nodiscard]] double schiller_naumann(double reynolds);
 
 /// Force on a resting sphere over the gas's speed relative to it, kg/s: 1/8 pi d^2 rho C_D |u|, which is Stokes's

@@ -12,8 +12,8 @@
 //
 // give, in units of m12 U, the impulse along the normal, against the slip and beside it, and the moments that
 // turn the spheres, about n x slip and the slip (of hard spheres the same numbers as against and beside). One
-// model thus serves all diameters, densities and mass ratios of its law. Without spins o is the slip; then the
-// orbit is left out, and nothing points beside.
+// model thus serves all diameters, densities and mass ratios of its law. Without spins o is the slip; then
+// the orbit is left out, and nothing points beside.
 //
 // Momentum is conserved exactly, since both spheres get the same impulse. An impulse that would add energy is
 // shortened until it adds none.

@@ -1,8 +1,8 @@
 #pragma once
 // Pairs of spheres as they touch, and as they part: one array a component, so that work runs across pairs.
 //
-// Sphere 1 and sphere 2 of a pair touch where the normal points, from the centre of 1 to that of 2. Everything
-// is in SI: m, kg/m3, m/s, rad/s. Spheres are solid: moment of inertia 2/5 m r^2.
+// Sphere 1 and sphere 2 of a pair touch where the normal points, from the centre of 1 to that of 2.
+// Everything is in SI: m, kg/m3, m/s, rad/s. Spheres are solid: moment of inertia 2/5 m r^2.
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -1,9 +1,9 @@
 #pragma once
 // From a set of collisions to the bundle `collision.elrom`.
 //
-// The last pairs of the set (5 %) are the test: no surrogate learns from them, and its errors in the bundle are
-// theirs. What learns from the others: the source's trees (document), a regressor in the frame of the collision
-// (frame), nothing (exact: the law is enough).
+// The last pairs of the set (5 %) are the test: no surrogate learns from them, and its errors in the bundle
+// are theirs. What learns from the others: the source's trees (document), a regressor in the frame of the
+// collision (frame), nothing (exact: the law is enough).
 
 #include <memory>
 #include <optional>
@@ -54,8 +54,8 @@ struct LearnedCollisions {
 };
 
 /// @param low document alone: pairs of the low range, which get trees of their own; may be missing
-/// @throws UsageError for a set that cannot be learned from (too few pairs); NotBuiltError for a trainer that this
-/// build lacks; Interrupted
+/// @throws UsageError for a set that cannot be learned from (too few pairs);
+/// NotBuiltError for a trainer that this build lacks; Interrupted
 [[nodiscard]] LearnedCollisions learn_collisions(const particle::CollisionSet& set,
                                                  const particle::CollisionSet* low,
                                                  const LearnSettings& settings, const LearnTools& tools);
