@@ -130,6 +130,8 @@ TEST_F(Collisions, TheCostSentenceComparesTheEndsOfTheFront) {
   EXPECT_THAT(cost_sentence(made),
               HasSubstr("20 times less error costs 5 times the time of a call: document"));
   EXPECT_THAT(cost_sentence(made), HasSubstr("12.5 s of training"));
+  document.errors.mae_velocity = 5.08e-6;
+  EXPECT_THAT(cost_sentence(made), HasSubstr("3900 times less error"));
   document.front = false;
   EXPECT_THAT(cost_sentence(made), HasSubstr("Accuracy costs nothing here: exact"));
 }

@@ -115,12 +115,18 @@ void mark_front(std::vector<CollisionModelReport>& models) {
                                [&](const CollisionModelReport& other) { return beats(other, model); });
 }
 
+// "document, 690 trees, slow pairs (to 2 m/s) apart": what stands in tables and beside points is its first two parts.
+std::string short_text(const particle::CollisionModel& model) {
+  const auto parts = base::split(model.text(), ',');
+  return parts.size() < 2 ? model.text() : parts[0] + "," + parts[1];
+}
+
 // Two of one kind are told apart by their files.
 void name_models(std::vector<CollisionModelReport>& models, const std::vector<CollisionBundle>& bundles) {
   for (std::size_t i = 0; i < models.size(); ++i) {
-    models[i].name = bundles[i].model->text();
+    models[i].name = short_text(*bundles[i].model);
     const auto alike = std::count_if(bundles.begin(), bundles.end(), [&](const CollisionBundle& other) {
-      return other.model->text() == models[i].name;
+      return short_text(*other.model) == models[i].name;
     });
     if (alike > 1) models[i].name += " (" + models[i].file.filename().string() + ")";
   }

@@ -82,7 +82,7 @@ std::string model_section(const CollisionReport& report) {
       "Mean absolute errors of the velocity components of both spheres and of r w, in m/s. Momentum: greatest change "
       "of a pair's, as a share of |p1| + |p2|. Energy: the most that a pair was given, as a share of its own, and how "
       "many were given any. Calls: pairs in a second of one core, measured here.",
-      "<div class=\"scroll\"><table><thead><tr><th>model</th><th>u</th><th>v</th><th>w</th><th>r w</th>"
+      "<div class=\"scroll\"><table class=\"tight\"><thead><tr><th>model</th><th>u</th><th>v</th><th>w</th><th>r w</th>"
       "<th>momentum</th><th>energy given</th><th>pairs given</th><th>training</th><th>calls/s</th><th "
       "style=\"text-align:left\">note</th></tr></thead><tbody>" +
           rows + source_rows(report) + "</tbody></table></div>");

@@ -36,6 +36,13 @@ const CollisionModelReport& nearest(const CollisionReport& report) {
   });
 }
 
+// Two digits: "3.6", "3900".
+std::string ratio_text(double ratio) {
+  if (!(ratio >= 100 && ratio < 1e15)) return base::rounded(ratio, 2);
+  const double unit = std::pow(10.0, std::floor(std::log10(ratio)) - 1);
+  return fmt::format("{:.0f}", unit * std::round(ratio / unit));
+}
+
 std::string balance_words(const particle::CollisionErrors& errors) {
   return fmt::format("{} and {}",
                      errors.momentum_error < 1e-12 ? "keeps momentum to rounding"
@@ -120,10 +127,10 @@ std::string cost_sentence(const CollisionReport& report) {
   return fmt::format(
       "{} times less error costs {} times the time of a call: {} errs by {} at {} a call ({}), {} by {} at {} "
       "({}).",
-      base::rounded(fast.errors.mae_velocity / near.errors.mae_velocity, 2),
-      base::rounded(near.call_seconds / fast.call_seconds, 2), near.name,
-      speed_text(near.errors.mae_velocity), call_text(near.call_seconds), trained(near), fast.name,
-      speed_text(fast.errors.mae_velocity), call_text(fast.call_seconds), trained(fast));
+      ratio_text(fast.errors.mae_velocity / near.errors.mae_velocity),
+      ratio_text(near.call_seconds / fast.call_seconds), near.name, speed_text(near.errors.mae_velocity),
+      call_text(near.call_seconds), trained(near), fast.name, speed_text(fast.errors.mae_velocity),
+      call_text(fast.call_seconds), trained(fast));
 }
 
 std::vector<std::string> set_sentences(const CollisionReport& report) {
