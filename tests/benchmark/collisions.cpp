@@ -1,5 +1,6 @@
-// bench-collisions: two-particle DEM and what learns from it. Seconds of 60,000 pairs, errors of the surrogates, momentum
-// and energy of random calls, calls a second; and the source's surrogate by its protocol, with and without what it added.
+// bench-collisions: two-particle DEM and what learns from it. Seconds of 60,000 pairs, errors of the
+// surrogates, momentum and energy of random calls, calls a second; and the source's surrogate by its
+// protocol, with and without what it added.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -82,7 +83,8 @@ surrogate::LearnedCollisions learn(const CollisionSet& set, SurrogateKind kind, 
 
 Json json_of(const CollisionErrors& errors) { return Json::parse(to_json(errors)); }
 
-/// Pairs of anything: sizes 10 um to 5 mm, densities 1 to 10,000 kg/m3, 1e-6 to 1e3 m/s, spins, angles up to grazing.
+/// Pairs of anything: sizes 10 um to 5 mm, densities 1 to 10,000
+/// kg/m3, 1e-6 to 1e3 m/s, spins, angles up to grazing.
 Pairs random_pairs(std::size_t n, bool with_spins, base::Random& random) {
   const auto power = [&](double low, double high) { return low * std::pow(high / low, random.uniform()); };
   const auto direction = [&] {

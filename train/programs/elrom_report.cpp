@@ -1,5 +1,5 @@
-// elrom-report: how good a study's model is, what more cases would buy, and what accuracy costs; how good collision
-// models are.
+// elrom-report: how good a study's model is, what more cases would
+// buy, and what accuracy costs; how good collision models are.
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -115,7 +115,8 @@ void mark_front(std::vector<CollisionModelReport>& models) {
                                [&](const CollisionModelReport& other) { return beats(other, model); });
 }
 
-// "document, 690 trees, slow pairs (to 2 m/s) apart": what stands in tables and beside points is its first two parts.
+// "document, 690 trees, slow pairs (to 2 m/s) apart": what
+// stands in tables and beside points is its first two parts.
 std::string short_text(const particle::CollisionModel& model) {
   const auto parts = base::split(model.text(), ',');
   return parts.size() < 2 ? model.text() : parts[0] + "," + parts[1];

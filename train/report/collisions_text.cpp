@@ -117,7 +117,7 @@ std::string cost_sentence(const CollisionReport& report) {
   const auto& near = **std::max_element(front.begin(), front.end(), by_time);
   const auto trained = [](const CollisionModelReport& model) {
     if (!model.training_seconds) return std::string("training not kept");
-    return *model.training_seconds < 0.05 ? std::string("no training")
+    return *model.training_seconds < 1e-3 ? std::string("no training")
                                           : base::duration(*model.training_seconds) + " of training";
   };
   if (&fast == &near)

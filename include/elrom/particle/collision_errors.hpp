@@ -32,13 +32,14 @@ struct CollisionErrors {
 
 /// What the model makes of each pair.
 [[nodiscard]] Motion motion_after(const CollisionModel& model, const Pairs& pairs);
-/// |error of the velocity| / |velocity after| of all spheres, those of number 1 first; without those that rest
-/// afterwards.
+/// |error of the velocity| / |velocity after| of all spheres, those of number 1 first; without those
+/// that rest afterwards.
 [[nodiscard]] std::vector<double> relative_errors(const Motion& model, const Motion& truth);
 /// @param count at least one pair
 [[nodiscard]] CollisionErrors errors_of(const CollisionModel& model, const CollisionSet& set,
                                         std::size_t first, std::size_t count);
-/// Processor time of one pair, s: these pairs block by block until n_calls are done, the quickest of five such runs.
+/// Processor time of one pair, s: these pairs block by block
+/// until n_calls are done, the quickest of five such runs.
 [[nodiscard]] double seconds_a_call(const CollisionModel& model, const Pairs& pairs, std::size_t n_calls);
 /// {"mae_m_per_s": [u, v, w], ...}
 [[nodiscard]] std::string to_json(const CollisionErrors& errors);

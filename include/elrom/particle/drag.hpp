@@ -14,8 +14,8 @@ struct Gas {
 /// (Schiller & Naumann 1933).
 [[nodiscard]] double schiller_naumann(double reynolds);
 
-/// Force on a resting sphere over the gas's speed relative to it, kg/s: 1/8 pi d^2 rho C_D |u|, which is Stokes's
-/// 3 pi mu d where the gas is at rest.
+/// Drag over the gas's speed relative to a sphere, kg/s: 1/8 pi d^2 rho C_D |u|. In the limit of a resting
+/// gas Stokes's 3 pi mu d.
 [[nodiscard]] double drag_rate(double diameter, double relative_speed, const Gas& gas);
 
 /// Speed at which drag carries weight less buoyancy, m/s. @throws UsageError unless sizes and densities are

@@ -32,8 +32,12 @@ struct LearnSettings {
   double test = 0.05;  ///< share of the pairs that judge
   ChebyshevSettings chebyshev = {};
   TreeSettings trees = {};
-  networks::Hyperparameters network = {.n_layers = 2, .n_units = 32, .batch_size = 256};
-  networks::TrainingBudget network_budget = {.max_epochs = 60, .patience = 15};
+  networks::Hyperparameters network = {.learning_rate = 2e-3,
+                                       .n_layers = 2,
+                                       .n_units = 64,
+                                       .batch_size = 256,
+                                       .activation = model::Activation::silu};
+  networks::TrainingBudget network_budget = {.max_epochs = 300, .patience = 40};
 };
 
 struct LearnTools {
