@@ -4,6 +4,7 @@
 #include <mutex>
 #include <new>
 
+#include "elrom/base/c_interface.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
@@ -22,35 +23,6 @@ struct elrom_predictor {
 };
 
 namespace {
-
-thread_local std::string last_error;
-
-int failed(elrom::ExitStatus status, const char* message) noexcept {
-  try {
-    last_error = message;
-  } catch (...) {
-    last_error.clear();
-  }
-  return static_cast<int>(status);
-}
-
-template <class Work>
-int guarded(const Work& work) noexcept {
-  try {
-    work();
-    return 0;
-  } catch (const elrom::Error& error) {
-    return failed(error.status(), error.what());
-  } catch (const std::exception& error) {
-    return failed(elrom::ExitStatus::internal, error.what());
-  } catch (...) {
-    return failed(elrom::ExitStatus::internal, "unknown failure");
-  }
-}
-
-void need(bool given, const char* what) {
-  if (!given) throw elrom::UsageError(std::string("null pointer: ") + what);
-}
 
 /// Scratch memory for one call, given back at its end, so that repeated calls allocate nothing.
 class Loan {
@@ -91,13 +63,13 @@ void check_threads(int n_threads) {
 }
 
 std::span<const double> inputs_of(const elrom_predictor& predictor, const double* inputs) {
-  need(inputs != nullptr, "inputs");
+  elrom::base::c_need(inputs != nullptr, "inputs");
   return {inputs, predictor.predictor.bundle().info().schema.size()};
 }
 
 }  // namespace
 
-const char* elrom_last_error(void) { return last_error.c_str(); }
+const char* elrom_last_error(void) { return elrom::base::c_last_error.c_str(); }
 const char* elrom_version(void) {
   static const std::string text(elrom::version());
   return text.c_str();
@@ -105,8 +77,8 @@ const char* elrom_version(void) {
 
 elrom_predictor* elrom_open(const char* bundle, const char* fields) {
   elrom_predictor* opened = nullptr;
-  guarded([&] {
-    need(bundle != nullptr, "bundle");
+  elrom::base::c_guarded([&] {
+    elrom::base::c_need(bundle != nullptr, "bundle");
     elrom::model::Selection selection;
     if (fields != nullptr && *fields != '\0') {
       for (const auto& name : elrom::base::split(fields, ','))
@@ -138,17 +110,17 @@ const char* elrom_field_unit(const elrom_predictor* p, size_t i) {
 }
 
 int elrom_cell_centres(const elrom_predictor* p, double* xyz) {
-  return guarded([&] {
-    need(p != nullptr && xyz != nullptr, "predictor or xyz");
+  return elrom::base::c_guarded([&] {
+    elrom::base::c_need(p != nullptr && xyz != nullptr, "predictor or xyz");
     const auto mesh = p->predictor.bundle().mesh();
     std::copy_n(mesh.centre.data(), mesh.centre.size(), xyz);
   });
 }
 
 int elrom_read_case(const elrom_predictor* p, const char* cases, const char* name, double* inputs) {
-  return guarded([&] {
-    need(p != nullptr && cases != nullptr && name != nullptr && inputs != nullptr,
-         "an argument of elrom_read_case");
+  return elrom::base::c_guarded([&] {
+    elrom::base::c_need(p != nullptr && cases != nullptr && name != nullptr && inputs != nullptr,
+                        "an argument of elrom_read_case");
     const auto table = elrom::field::read_cases(cases, p->predictor.bundle().info().schema);
     std::vector<std::string> names;
     for (const auto& item : table) {
@@ -164,8 +136,8 @@ int elrom_read_case(const elrom_predictor* p, const char* cases, const char* nam
 }
 
 int elrom_predict(const elrom_predictor* p, const double* inputs, float* values, int n_threads) {
-  return guarded([&] {
-    need(p != nullptr && values != nullptr, "predictor or values");
+  return elrom::base::c_guarded([&] {
+    elrom::base::c_need(p != nullptr && values != nullptr, "predictor or values");
     check_threads(n_threads);
     Loan loan(*p);
     p->predictor.predict(inputs_of(*p, inputs), {values, p->predictor.size()}, {}, loan.scratch(), n_threads);
@@ -174,8 +146,8 @@ int elrom_predict(const elrom_predictor* p, const double* inputs, float* values,
 
 int elrom_write_prediction(const elrom_predictor* p, const double* inputs, const char* name, double load,
                            const char* path, int n_threads) {
-  return guarded([&] {
-    need(p != nullptr && name != nullptr && path != nullptr, "predictor, name or path");
+  return elrom::base::c_guarded([&] {
+    elrom::base::c_need(p != nullptr && name != nullptr && path != nullptr, "predictor, name or path");
     check_threads(n_threads);
     const auto given = inputs_of(*p, inputs);
     const auto& predictor = p->predictor;
@@ -193,8 +165,8 @@ int elrom_write_prediction(const elrom_predictor* p, const double* inputs, const
 
 int elrom_validity(const elrom_predictor* p, const double* inputs, int* verdict, char* reason,
                    size_t reason_size) {
-  return guarded([&] {
-    need(p != nullptr && verdict != nullptr, "predictor or verdict");
+  return elrom::base::c_guarded([&] {
+    elrom::base::c_need(p != nullptr && verdict != nullptr, "predictor or verdict");
     const auto assessment = p->predictor.guard().assess(inputs_of(*p, inputs));
     *verdict = static_cast<int>(assessment.verdict);
     if (reason == nullptr || reason_size == 0) return;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elrom/base/c_interface.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/particle/collision.h"
@@ -20,35 +21,6 @@ struct elrom_collision {
 namespace {
 
 using Index = Eigen::Index;
-
-thread_local std::string last_error;
-
-int failed(elrom::ExitStatus status, const char* message) noexcept {
-  try {
-    last_error = message;
-  } catch (...) {
-    last_error.clear();
-  }
-  return static_cast<int>(status);
-}
-
-template <class Work>
-int guarded(const Work& work) noexcept {
-  try {
-    work();
-    return 0;
-  } catch (const elrom::Error& error) {
-    return failed(error.status(), error.what());
-  } catch (const std::exception& error) {
-    return failed(elrom::ExitStatus::internal, error.what());
-  } catch (...) {
-    return failed(elrom::ExitStatus::internal, "unknown failure");
-  }
-}
-
-void need(bool given, const char* what) {
-  if (!given) throw elrom::UsageError(std::string("null pointer: ") + what);
-}
 
 /// The caller's arrays.
 struct Arrays {
@@ -125,12 +97,12 @@ class Scratch {
 
 }  // namespace
 
-const char* elrom_collision_last_error(void) { return last_error.c_str(); }
+const char* elrom_collision_last_error(void) { return elrom::base::c_last_error.c_str(); }
 
 elrom_collision* elrom_collision_open(const char* path) {
   elrom_collision* opened = nullptr;
-  guarded([&] {
-    need(path != nullptr, "path");
+  elrom::base::c_guarded([&] {
+    elrom::base::c_need(path != nullptr, "path");
     auto bundle = elrom::particle::CollisionBundle::read(path);
     auto text = bundle.model->text();
     opened = new elrom_collision{std::move(bundle), std::move(text)};
@@ -149,16 +121,16 @@ int elrom_collision_impulses(const elrom_collision* model, size_t n, const doubl
                              const double* normal, const double* diameter_1, const double* diameter_2,
                              const double* density_1, const double* density_2, double* linear_1,
                              double* linear_2, double* angular_1, double* angular_2) {
-  return guarded([&] {
-    need(model != nullptr, "model");
+  return elrom::base::c_guarded([&] {
+    elrom::base::c_need(model != nullptr, "model");
     if (n == 0) return;
     const Arrays arrays{velocity_1, velocity_2, spin_1,   spin_2,   normal,    diameter_1, diameter_2,
                         density_1,  density_2,  linear_1, linear_2, angular_1, angular_2};
-    need(velocity_1 != nullptr && velocity_2 != nullptr, "velocity_1 or velocity_2");
-    need(normal != nullptr, "normal");
-    need(diameter_1 != nullptr && diameter_2 != nullptr, "diameter_1 or diameter_2");
-    need(density_1 != nullptr && density_2 != nullptr, "density_1 or density_2");
-    need(linear_1 != nullptr && linear_2 != nullptr, "linear_1 or linear_2");
+    elrom::base::c_need(velocity_1 != nullptr && velocity_2 != nullptr, "velocity_1 or velocity_2");
+    elrom::base::c_need(normal != nullptr, "normal");
+    elrom::base::c_need(diameter_1 != nullptr && diameter_2 != nullptr, "diameter_1 or diameter_2");
+    elrom::base::c_need(density_1 != nullptr && density_2 != nullptr, "density_1 or density_2");
+    elrom::base::c_need(linear_1 != nullptr && linear_2 != nullptr, "linear_1 or linear_2");
     expect_sound(n, arrays);
     thread_local Scratch scratch;
     for (std::size_t first = 0; first < n; first += portion)
