@@ -1,6 +1,6 @@
 #pragma once
-// What the C interfaces share: no exception leaves them; each becomes a status and a line of text kept for the
-// calling thread. Every library has its own line.
+// What the C interfaces share: no exception leaves them; each becomes a status and a line of text kept for
+// the calling thread. Every library has its own line.
 
 #include <exception>
 #include <string>
