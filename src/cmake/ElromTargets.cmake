@@ -40,6 +40,12 @@ function(elrom_precompile target)
   target_compile_options(${target} PRIVATE -fpch-preprocess)  # lets ccache see through the precompiled header
 endfunction()
 
+# elrom_unity(target): with ELROM_UNITY a few sources are compiled at once. Tests and commands are short, and what they
+# instantiate (JSON, matchers, Eigen, CLI11) is much the same: half the time from nothing, but more of it after one edit.
+function(elrom_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ELROM_UNITY} UNITY_BUILD_BATCH_SIZE 5)
+endfunction()
+
 # The header of the libraries is of a target that links nothing: what one of them defines beside (fmt's FMT_HEADER_ONLY) must
 # not be in it, or GCC takes it for none of the others.
 function(elrom_library_headers)
@@ -129,6 +135,7 @@ function(elrom_program name)
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_LINKS})
   elrom_driver(${target})
+  elrom_unity(${target})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${target} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
@@ -164,6 +171,7 @@ function(elrom_tests component)
     target_precompile_headers(${name} REUSE_FROM test-headers)
     target_compile_options(${name} PRIVATE ${ELROM_DRIVER_OPTIMISATION} -fpch-preprocess)
   endif()
+  elrom_unity(${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()

@@ -15,7 +15,7 @@
 namespace elrom::base {
 namespace {
 
-enum class Colour { red, green };
+enum class Paint { red, green };
 struct Inner {
   int x = 0;
   std::vector<double> list;
@@ -29,7 +29,7 @@ struct WithKey {
 };
 struct Everything {
   bool flag = false;
-  Colour colour = Colour::red;
+  Paint colour = Paint::red;
   double number = 0;
   std::uint64_t whole = 0;
   std::string text;

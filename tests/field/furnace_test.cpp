@@ -16,13 +16,13 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr const char* shipped = ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.toml";
+constexpr const char* shipped_file = ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.toml";
 
 const std::string least =
     "name = \"f\"\n[solids]\ndensity_kg_per_m3 = 2500\npacking_limit = 0.6\n"
     "[[opening]]\ninputs = \"air_*\"\nlow_m = 1\nhigh_m = 2.5\n";
 
-InputSchema schema() {
+InputSchema inputs_of_a_furnace() {
   return InputSchema({{"air_1", "kg/s", "kg/s"},
                       {"air_2", "kg/s", "kg/s"},
                       {"fuel", "kg/s", "kg/s"},
@@ -50,7 +50,7 @@ TEST(Furnace, ReadsWhatTheFileSays) {
 }
 
 TEST(Furnace, WrittenTextReadsBackToItself) {
-  auto furnace = read_furnace(shipped);
+  auto furnace = read_furnace(shipped_file);
   furnace.name = "a \"quoted\"\nname \\";
 
   const auto again = parse_furnace(to_toml(furnace), "text");
@@ -67,7 +67,7 @@ TEST(Furnace, WrittenTextReadsBackToItself) {
 TEST(Furnace, TheShippedOneLiesAsItsPatches) {
   constexpr double layer = 47.0 / 33.0;
 
-  const auto furnace = read_furnace(shipped);
+  const auto furnace = read_furnace(shipped_file);
 
   EXPECT_EQ(furnace.outlet_low_m, 29 * layer);
   EXPECT_EQ(furnace.solid_density, 2400);
@@ -106,18 +106,18 @@ TEST(Furnace, AWrongFileIsOneLineWithItsPlace) {
 
 TEST(Furnace, MustFitTheCases) {
   const auto furnace = parse_furnace(least, "f.toml");
-  EXPECT_NO_THROW(expect_fits(furnace, schema(), "f.toml"));
-  EXPECT_THAT(flows_without_opening(furnace, schema()), ElementsAre("fuel"));
+  EXPECT_NO_THROW(expect_fits(furnace, inputs_of_a_furnace(), "f.toml"));
+  EXPECT_THAT(flows_without_opening(furnace, inputs_of_a_furnace()), ElementsAre("fuel"));
 
   auto mistaken = furnace;
   mistaken.openings.push_back({.inputs = "fule"});
-  EXPECT_ERROR(InputError, "did you mean 'fuel'?", expect_fits(mistaken, schema(), "f.toml"));
+  EXPECT_ERROR(InputError, "did you mean 'fuel'?", expect_fits(mistaken, inputs_of_a_furnace(), "f.toml"));
   auto no_flow = furnace;
   no_flow.openings.push_back({.inputs = "air_temperature"});
-  EXPECT_ERROR(InputError, "matches no gas flow", expect_fits(no_flow, schema(), "f.toml"));
+  EXPECT_ERROR(InputError, "matches no gas flow", expect_fits(no_flow, inputs_of_a_furnace(), "f.toml"));
   auto twice = furnace;
   twice.openings.push_back({.inputs = "air_2"});
-  EXPECT_ERROR(InputError, "'air_2' enters by two openings", expect_fits(twice, schema(), "f.toml"));
+  EXPECT_ERROR(InputError, "'air_2' enters by two openings", expect_fits(twice, inputs_of_a_furnace(), "f.toml"));
 }
 
 TEST(Furnace, LimitsTheVolumeFractionAlone) {

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-TensorHeader sample() {
+TensorHeader small_header() {
   TensorHeader header;
   header.metadata = {{"plain", "text"},
                      {"escapes", "\" \\ / \b \f \n \r \t \x01 \x7f"},
@@ -51,16 +51,16 @@ void expect_equal(const TensorHeader& a, const TensorHeader& b) {
 }
 
 TEST(TensorHeader, ReadsWhatItWrote) {
-  const auto header = read(format_header(sample()));
+  const auto header = read(format_header(small_header()));
   ASSERT_TRUE(header);
-  expect_equal(*header, sample());
+  expect_equal(*header, small_header());
 }
 
 TEST(TensorHeader, ReadsTheSameInOtherWords) {
   // Spaces, another order, and every character escaped that can be.
   const auto escaped = [](const std::string& text) { return Json(text).dump(-1, ' ', true); };
   std::string json = "{ \t\r\n";
-  const auto header = sample();
+  const auto header = small_header();
   for (auto it = header.tensors.rbegin(); it != header.tensors.rend(); ++it) {
     json += escaped(it->first) + " : { \"data_offsets\" : [ " + std::to_string(it->second.begin) + " , " +
             std::to_string(it->second.end) + " ] , \"dtype\":\"\\u00" +
@@ -117,7 +117,7 @@ bool is_a_header(const Json& document, const std::multiset<std::string>& good_te
 // Oracle: a general JSON parser. What it refuses is refused, what is accepted is what it reads, and where it
 // still finds a header nothing is refused.
 TEST(TensorHeader, AgreesWithAGeneralParserOnDamagedHeaders) {
-  const std::string good = format_header(sample());
+  const std::string good = format_header(small_header());
   base::Random random(base::Seed(6));
   const std::string bits = "{}[]\",:\\u0019azEe.-+ \n\x01\x7f\x80\xbf\xc0\xc3\xe2\xed\xf0\xf4\xff";
   std::multiset<std::string> tensors;

@@ -11,10 +11,10 @@
 namespace elrom::math {
 namespace {
 
-struct Sample {
+struct SmoothSample {
   MatrixD x{12, 3};
   Eigen::MatrixXd y{12, 2};
-  Sample() {
+  SmoothSample() {
     base::Random random(base::Seed(3).derive("gp"));
     for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] = random.normal();
     for (Eigen::Index i = 0; i < y.rows(); ++i) {
@@ -27,7 +27,7 @@ struct Sample {
 GpParameters some_parameters() { return {Eigen::Vector3d(1.5, 2.0, 4.0), 1.3, 0.05, Covariance::matern52}; }
 
 TEST(GaussianProcess, ReturnsNoiseFreeDataWithoutVariance) {
-  const Sample sample;
+  const SmoothSample sample;
   GpParameters parameters = some_parameters();
   parameters.noise_variance = 0;
 
@@ -39,7 +39,7 @@ TEST(GaussianProcess, ReturnsNoiseFreeDataWithoutVariance) {
 }
 
 TEST(GaussianProcess, FarFromDataIsThePrior) {
-  const Sample sample;
+  const SmoothSample sample;
   const GaussianProcess process(sample.x, sample.y, some_parameters());
   const MatrixD far = MatrixD::Constant(1, 3, 1e6);
 
@@ -48,7 +48,7 @@ TEST(GaussianProcess, FarFromDataIsThePrior) {
 }
 
 TEST(GaussianProcess, LeaveOneOutEqualsRefits) {
-  const Sample sample;
+  const SmoothSample sample;
   const Eigen::MatrixXd closed =
       GaussianProcess(sample.x, sample.y, some_parameters()).leave_one_out_residuals();
 
@@ -76,7 +76,7 @@ TEST(GaussianProcess, LikelihoodOfOneDatumIsTheNormalDensity) {
 }
 
 TEST(GaussianProcess, LikelihoodGradientEqualsDifferences) {
-  const Sample sample;
+  const SmoothSample sample;
   Eigen::VectorXd theta(5), gradient, unused;
   theta << 0.3, 0.8, 1.2, 0.1, -2;
   const double h = 1e-6;

@@ -10,10 +10,10 @@
 namespace elrom::math {
 namespace {
 
-struct Sample {
+struct LinearSample {
   MatrixD x{20, 4};
   Eigen::MatrixXd y{20, 2};
-  Sample() {
+  LinearSample() {
     base::Random random(base::Seed(13).derive("ridge"));
     for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] = random.normal();
     for (Eigen::Index i = 0; i < 20; ++i) y.row(i) << 5 + x(i, 0) + random.normal(), x(i, 1) - 2 * x(i, 2);
@@ -21,7 +21,7 @@ struct Sample {
 };
 
 TEST(Ridge, SolvesTheNormalEquations) {
-  const Sample sample;
+  const LinearSample sample;
   const std::vector<double> penalty{3.0};
 
   const Ridge ridge = fit_ridge(sample.x, sample.y, penalty);
@@ -35,7 +35,7 @@ TEST(Ridge, SolvesTheNormalEquations) {
 }
 
 TEST(Ridge, LeaveOneOutVarianceEqualsRefits) {
-  const Sample sample;
+  const LinearSample sample;
   const std::vector<double> penalty{0.7};
   const Ridge ridge = fit_ridge(sample.x, sample.y, penalty);
   Eigen::RowVector2d squares = Eigen::RowVector2d::Zero();
@@ -55,7 +55,7 @@ TEST(Ridge, LeaveOneOutVarianceEqualsRefits) {
 }
 
 TEST(Ridge, PrefersTheSmallPenaltyOnExactData) {
-  const Sample sample;
+  const LinearSample sample;
   const Eigen::MatrixXd exact = sample.x.col(1) - 2 * sample.x.col(2);
   const std::vector<double> penalties{100, 1e-6, 1};
 

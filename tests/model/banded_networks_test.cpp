@@ -49,12 +49,12 @@ std::vector<std::int32_t> all_planes() {
   return planes;
 }
 
-struct Prediction {
+struct NetworkValues {
   std::vector<float> values, spread;
 };
-Prediction predict(const BandedNetworks& model, const std::vector<std::int32_t>& planes, bool best = false,
+NetworkValues predict(const BandedNetworks& model, const std::vector<std::int32_t>& planes, bool best = false,
                    std::vector<double> inputs = {0.3, -0.2, 1.1, 0.7}) {
-  Prediction result{std::vector<float>(planes.size() * n_columns),
+  NetworkValues result{std::vector<float>(planes.size() * n_columns),
                     std::vector<float>(planes.size() * n_columns)};
   Workspace workspace;
   model.predict({inputs, planes, best}, result.values, result.spread, workspace);

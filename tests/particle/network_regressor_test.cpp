@@ -25,7 +25,7 @@ math::Standardiser scaler(std::initializer_list<double> mean, std::initializer_l
 
 NetworkRegressor by_hand() { return {scaler({10, 20}, {4, 2}), scaler({100}, {8}), one_layer()}; }
 
-double at(const Regressor& regressor, double x1, double x2) {
+double value_at(const Regressor& regressor, double x1, double x2) {
   Table inputs(1, 2), outputs(1, 1);
   inputs << x1, x2;
   regressor.evaluate(inputs, outputs);
@@ -33,7 +33,7 @@ double at(const Regressor& regressor, double x1, double x2) {
 }
 
 // x standardised: (14 - 10) / 4 = 1, (16 - 20) / 2 = -2; y = 2 + 2 + 0.5; back: 100 + 8 y.
-TEST(NetworkRegressor, ScalesInAndOut) { EXPECT_NEAR(at(by_hand(), 14, 16), 100 + 8 * 4.5, 1e-5); }
+TEST(NetworkRegressor, ScalesInAndOut) { EXPECT_NEAR(value_at(by_hand(), 14, 16), 100 + 8 * 4.5, 1e-5); }
 
 TEST(NetworkRegressor, ComesBackFromAFile) {
   io::TensorFile file;
@@ -42,7 +42,7 @@ TEST(NetworkRegressor, ComesBackFromAFile) {
   EXPECT_EQ(back->kind(), "network");
   EXPECT_EQ(back->n_inputs(), 2u);
   EXPECT_EQ(back->n_outputs(), 1u);
-  EXPECT_EQ(at(*back, 11, 17), at(by_hand(), 11, 17));
+  EXPECT_EQ(value_at(*back, 11, 17), value_at(by_hand(), 11, 17));
 }
 
 TEST(NetworkRegressor, RefusesScalesThatCannotBe) {

@@ -12,7 +12,8 @@
 
 namespace elrom::particle::test {
 
-using elrom::test::TemporaryFolder;
+using namespace elrom::test;  // test::read_bytes is found here too
+
 using Vector = Eigen::Vector3d;
 
 inline Pairs one_pair(const Vector& velocity_1, const Vector& velocity_2, const Vector& normal,

@@ -29,7 +29,7 @@ std::filesystem::path folder(const std::string& name) {
 class Accuracy : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    study_ = std::make_unique<testing::SmallStudy>(folder("accuracy"));
+    study_ = std::make_unique<SmallStudy>(folder("accuracy"));
     report_ = std::make_unique<AccuracyReport>(
         evaluate({.study = study_->folder(), .figures = true}, silent_log()));
   }
@@ -37,17 +37,17 @@ class Accuracy : public ::testing::Test {
     report_.reset();
     study_.reset();
   }
-  static std::unique_ptr<testing::SmallStudy> study_;
+  static std::unique_ptr<SmallStudy> study_;
   static std::unique_ptr<AccuracyReport> report_;
 };
-std::unique_ptr<testing::SmallStudy> Accuracy::study_;
+std::unique_ptr<SmallStudy> Accuracy::study_;
 std::unique_ptr<AccuracyReport> Accuracy::report_;
 
 TEST_F(Accuracy, ScoresHeldOutLoadsAndKeepsRepeatsForTheNoise) {
   ASSERT_EQ(report_->cases.size(), 2u);
   EXPECT_EQ(report_->cases[0].name, "load_12");
   EXPECT_THAT(report_->repeats, ::testing::UnorderedElementsAre("load_12", "rep1", "rep2"));
-  EXPECT_EQ(report_->n_training, testing::SmallStudy::n_training);
+  EXPECT_EQ(report_->n_training, SmallStudy::n_training);
 }
 
 TEST_F(Accuracy, TheSameModelScoresTheSameAsItsPeer) {

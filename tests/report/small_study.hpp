@@ -15,7 +15,7 @@
 #include "elrom/model/bundle.hpp"
 #include "elrom/study/held_out.hpp"
 
-namespace elrom::report::testing {
+namespace elrom::report {
 
 class SmallStudy {
  public:
@@ -134,4 +134,4 @@ class SmallStudy {
   std::filesystem::path folder_;
 };
 
-}  // namespace elrom::report::testing
+}  // namespace elrom::report
