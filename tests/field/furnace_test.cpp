@@ -117,7 +117,8 @@ TEST(Furnace, MustFitTheCases) {
   EXPECT_ERROR(InputError, "matches no gas flow", expect_fits(no_flow, inputs_of_a_furnace(), "f.toml"));
   auto twice = furnace;
   twice.openings.push_back({.inputs = "air_2"});
-  EXPECT_ERROR(InputError, "'air_2' enters by two openings", expect_fits(twice, inputs_of_a_furnace(), "f.toml"));
+  EXPECT_ERROR(InputError, "'air_2' enters by two openings",
+               expect_fits(twice, inputs_of_a_furnace(), "f.toml"));
 }
 
 TEST(Furnace, LimitsTheVolumeFractionAlone) {

@@ -53,9 +53,9 @@ struct NetworkValues {
   std::vector<float> values, spread;
 };
 NetworkValues predict(const BandedNetworks& model, const std::vector<std::int32_t>& planes, bool best = false,
-                   std::vector<double> inputs = {0.3, -0.2, 1.1, 0.7}) {
+                      std::vector<double> inputs = {0.3, -0.2, 1.1, 0.7}) {
   NetworkValues result{std::vector<float>(planes.size() * n_columns),
-                    std::vector<float>(planes.size() * n_columns)};
+                       std::vector<float>(planes.size() * n_columns)};
   Workspace workspace;
   model.predict({inputs, planes, best}, result.values, result.spread, workspace);
   return result;
