@@ -248,7 +248,7 @@ CfdCase read_openfoam(const std::filesystem::path& directory) {
 
   const auto fields = field::standard_fields();
   CfdCase result;
-  result.record.inputs.name = directory_name(directory);
+  result.record.source = result.record.inputs.name = directory_name(directory);
   result.record.inputs.load = std::nan("");
   result.record.averaging_window_s = instants.back().time - instants.front().time;
   result.fields.assign(fields.begin(), fields.end());

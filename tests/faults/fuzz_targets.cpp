@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "../../data/ingest/foam_file.hpp"
+#include "../../data/ingest/vtu.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/ingest/cfd_case.hpp"
@@ -53,6 +54,13 @@ void fuzz_foam(Bytes input) {
   }
 }
 
+void fuzz_vtu(Bytes input) {
+  try {
+    (void)ingest::group_into_planes(ingest::read_vtu(memory_file("mesh.vtu", input)), {}, "mesh.vtu");
+  } catch (const Error&) {
+  }
+}
+
 }  // namespace
 
 const std::vector<FuzzTarget>& fuzz_targets() {
@@ -63,6 +71,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
                                                   {"cases_toml", fuzz_cases_toml},
                                                   {"fluent_ascii", fuzz_fluent},
                                                   {"foam", fuzz_foam},
+                                                  {"vtu", fuzz_vtu},
                                                   {"collisions", fuzz_collisions},
                                                   {"collisions_content", fuzz_collisions_content},
                                                   {"collision_model", fuzz_collision_model},
