@@ -139,6 +139,17 @@ TEST_F(OwnMeshImport, OfAnEl3dExportIsExact) {
   EXPECT_FLOAT_EQ(values(0, 23), 0.123F);
 }
 
+TEST_F(OwnMeshImport, OfAnOpenFoamCaseIsExact) {
+  options_.files = {ELROM_SOURCE_DIR "/data/formats/instants/case"};
+  options_.cases = folder_.write("cases.csv", "case,speed [m/s]\ncase,1\n");
+
+  const auto own = group_into_planes(read_cells(options_.files.front()), {}, "a");
+  EXPECT_TRUE(own.layered && own.has_volumes && own.has_corners);
+  expect_exact(own.mesh);
+
+  EXPECT_EQ(field::SnapshotStore::open(options_.store).cases()[0].source, "case");
+}
+
 TEST_F(OwnMeshImport, OfATableWithItsOwnFieldsIsExactOnAFlatMesh) {
   std::string table = "x [m],y [m],z [m],velocity_x [m/s],heat flux [W]\n";
   for (int i = 0; i < 12; ++i)
