@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../data/ingest/foam_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/field/boundary_conditions.hpp"
+#include "elrom/foam/foam_file.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "fuzz_bundles.hpp"
 #include "fuzz_collisions.hpp"
@@ -45,7 +45,7 @@ void fuzz_fluent(Bytes input) {
 
 void fuzz_foam(Bytes input) {
   try {
-    ingest::FoamFile file(memory_file("foam", input));
+    foam::FoamFile file(memory_file("foam", input));
     file.to_body();
     (void)file.vectors();
     if (file.seek("internalField")) (void)file.scalars();
