@@ -12,7 +12,7 @@
 #include "elrom/base/units.hpp"
 #include "elrom/field/catalogue.hpp"
 #include "elrom/ingest/cfd_case.hpp"
-#include "text_file.hpp"
+#include "elrom/io/text_file.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -252,7 +252,7 @@ std::string case_name(const std::filesystem::path& path) {
 }  // namespace
 
 CfdCase read_fluent_ascii(const std::filesystem::path& path) {
-  const auto text = read_text_file(path);
+  const auto text = io::read_text_file(path);
   Lines lines(text);
   const auto header = lines.next();
   if (!header)

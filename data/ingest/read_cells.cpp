@@ -1,11 +1,11 @@
 #include "el3d.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/foam/foam_file.hpp"
 #include "elrom/ingest/case_files.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "elrom/ingest/own_mesh.hpp"
 #include "elrom/io/hdf5.hpp"
-#include "foam_file.hpp"
-#include "foam_mesh.hpp"
+#include "foam_cells.hpp"
 #include "vtu.hpp"
 
 namespace elrom::ingest {
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 CellSet read_folder(const fs::path& path) {
   for (const auto& folder : {path / "constant" / "polyMesh", path / "polyMesh", path})
-    if (FoamFile::exists(folder / "owner")) return read_poly_cells(folder);
+    if (foam::FoamFile::exists(folder / "owner")) return read_poly_cells(folder);
   throw InputError({.what = "folder holds no mesh",
                     .where = path.string(),
                     .expected = "an OpenFOAM case, or its polyMesh with points, faces, owner and neighbour"});

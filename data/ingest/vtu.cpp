@@ -14,7 +14,7 @@
 #include "cell_shapes.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "text_file.hpp"
+#include "elrom/io/text_file.hpp"
 #include "vtk_array.hpp"
 
 namespace elrom::ingest {
@@ -314,7 +314,7 @@ class Cells {
 }  // namespace
 
 CellSet read_vtu(const std::filesystem::path& path) {
-  const auto text = read_text_file(path);
+  const auto text = io::read_text_file(path);
   const auto where = path.string();
   return Cells(Vtu(text, where), where).take();
 }

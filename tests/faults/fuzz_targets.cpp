@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../data/ingest/foam_file.hpp"
 #include "../../data/ingest/vtu.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/field/boundary_conditions.hpp"
+#include "elrom/foam/foam_file.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "fuzz_bundles.hpp"
 #include "fuzz_collisions.hpp"
@@ -46,7 +46,7 @@ void fuzz_fluent(Bytes input) {
 
 void fuzz_foam(Bytes input) {
   try {
-    ingest::FoamFile file(memory_file("foam", input));
+    foam::FoamFile file(memory_file("foam", input));
     file.to_body();
     (void)file.vectors();
     if (file.seek("internalField")) (void)file.scalars();
