@@ -1,5 +1,7 @@
 // EL3D exports: one HDF5 file a case (data/FORMATS.md, "EL3D export").
 
+#include "el3d.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,8 +10,6 @@
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
 #include "elrom/field/catalogue.hpp"
-#include "elrom/ingest/cfd_case.hpp"
-#include "elrom/io/hdf5.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -25,29 +25,6 @@ base::Unit unit_of(const io::Hdf5Object& object, const std::string& symbol, cons
                     .where = object.where(),
                     .found = "'" + symbol + "'",
                     .expected = "one of " + base::join(base::units_of(si), ", ")});
-}
-
-void read_mesh(const io::Hdf5File& file, CfdCase& one) {
-  const auto centre = file.dataset("mesh/centre");
-  centre.expect_shape({0, 3});
-  const auto n = centre.shape()[0];
-  if (n == 0) throw InputError({.what = "no cells", .where = centre.where()});
-  const auto metres =
-      centre.has_attribute("unit") ? unit_of(centre, centre.text("unit"), "m") : base::unit("m");
-  const auto values = centre.read<double>();
-  one.centre = Eigen::Map<const MatrixD>(values.data(), static_cast<Eigen::Index>(n), 3) * metres.factor;
-  if (!one.centre.allFinite())
-    throw InputError({.what = "a coordinate that is not finite", .where = centre.where()});
-  const auto volume = file.dataset("mesh/volume");
-  volume.expect_shape({n});
-  (void)(volume.has_attribute("unit") ? unit_of(volume, volume.text("unit"), "m3") : base::unit("m3"));
-  one.volume = volume.read<double>();
-  const auto bad = std::find_if_not(one.volume.begin(), one.volume.end(),
-                                    [](double v) { return v > 0 && std::isfinite(v); });
-  if (bad == one.volume.end()) return;
-  throw InputError({.what = "a cell without volume",
-                    .where = volume.where() + ", cell " + std::to_string(bad - one.volume.begin()),
-                    .found = base::number(*bad)});
 }
 
 void read_field(const io::Hdf5Dataset& dataset, const base::Unit& unit, std::span<float> row) {
@@ -119,6 +96,30 @@ void read_boundary_conditions(const io::Hdf5File& file, CfdCase& one) {
 
 }  // namespace
 
+void read_el3d_mesh(const io::Hdf5File& file, CfdCase& one) {
+  const auto centre = file.dataset("mesh/centre");
+  centre.expect_shape({0, 3});
+  const auto n = centre.shape()[0];
+  if (n == 0) throw InputError({.what = "no cells", .where = centre.where()});
+  const auto metres =
+      centre.has_attribute("unit") ? unit_of(centre, centre.text("unit"), "m") : base::unit("m");
+  const auto values = centre.read<double>();
+  one.centre = Eigen::Map<const MatrixD>(values.data(), static_cast<Eigen::Index>(n), 3) * metres.factor;
+  if (!one.centre.allFinite())
+    throw InputError({.what = "a coordinate that is not finite", .where = centre.where()});
+  if (!file.has("mesh/volume")) return;
+  const auto volume = file.dataset("mesh/volume");
+  volume.expect_shape({n});
+  (void)(volume.has_attribute("unit") ? unit_of(volume, volume.text("unit"), "m3") : base::unit("m3"));
+  one.volume = volume.read<double>();
+  const auto bad = std::find_if_not(one.volume.begin(), one.volume.end(),
+                                    [](double v) { return v > 0 && std::isfinite(v); });
+  if (bad == one.volume.end()) return;
+  throw InputError({.what = "a cell without volume",
+                    .where = volume.where() + ", cell " + std::to_string(bad - one.volume.begin()),
+                    .found = base::number(*bad)});
+}
+
 CfdCase read_el3d(const std::filesystem::path& path) {
   const auto file = io::Hdf5File::open(path);
   CfdCase one;
@@ -128,7 +129,9 @@ CfdCase read_el3d(const std::filesystem::path& path) {
   one.record.inputs.load = file.has_attribute("load") ? file.number("load") : std::nan("");
   if (file.has_attribute("averaging_window_s"))
     one.record.averaging_window_s = file.number("averaging_window_s");
-  read_mesh(file, one);
+  read_el3d_mesh(file, one);
+  if (one.volume.empty())
+    throw InputError({.what = "no volumes of cells", .where = path.string(), .expected = "/mesh/volume"});
   read_fields(file, one);
   read_boundary_conditions(file, one);
   return one;

@@ -1,16 +1,18 @@
 // Tables of cell values as text: Fluent's ASCII solution data, and plain CSV with `name [unit]` headings.
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "column_names.hpp"
+#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
 #include "elrom/field/catalogue.hpp"
 #include "elrom/ingest/cfd_case.hpp"
-#include "text_file.hpp"
+#include "elrom/io/text_file.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -63,9 +65,23 @@ std::vector<std::string> split_header(std::string_view line, bool commas) {
   return headings;
 }
 
+// A column of a field that no program is known to have: its unit says that it is one.
+void become_own_field(Column& column, const std::string& name, const std::string& symbol,
+                      const std::string& where) {
+  if (name.empty() || name.find('/') != std::string::npos) {
+    throw InputError({.what = "no name for a field",
+                      .where = where,
+                      .found = "'" + name + "'",
+                      .expected = "a name without '/' before the unit"});
+  }
+  column.meaning = {ColumnKind::field, name, base::unit(symbol).si};
+}
+
 Column make_column(const std::string& heading, const std::string& where) {
   const auto [name, symbol] = base::split_unit(heading);
   Column column{.heading = heading, .meaning = column_meaning(name)};
+  if (column.meaning.kind == ColumnKind::ignored && !symbol.empty())
+    become_own_field(column, name, symbol, where);
   if (column.meaning.kind == ColumnKind::ignored) return column;
   column.unit = base::unit(symbol.empty() ? column.meaning.si : symbol);
   if (column.unit.si != column.meaning.si) {
@@ -85,17 +101,49 @@ const Column* find(const std::vector<Column>& columns, ColumnKind kind, std::str
   return found;
 }
 
-void require(const std::vector<Column>& columns, ColumnKind kind, const std::string& name,
-             const std::vector<std::string>& spellings, const std::string& where) {
-  if (find(columns, kind, kind == ColumnKind::field ? name : "")) return;
-  std::vector<std::string> headings;
-  for (const auto& column : columns) headings.push_back(column.heading);
-  const auto near = base::closest_name(name, headings);
-  throw InputError({.what = "missing column '" + name + "'",
-                    .where = where,
-                    .found = "columns " + base::join(headings, ", "),
-                    .expected = "a heading among " + base::join(spellings, ", "),
-                    .advice = near ? "is '" + *near + "' meant?" : ""});
+void require_place(const std::vector<Column>& columns, const std::string& where) {
+  const std::array<std::pair<ColumnKind, std::string>, 3> places{
+      {{ColumnKind::x, "x"}, {ColumnKind::y, "y"}, {ColumnKind::z, "z"}}};
+  for (const auto& [kind, letter] : places) {
+    if (find(columns, kind)) continue;
+    std::vector<std::string> headings;
+    for (const auto& column : columns) headings.push_back(column.heading);
+    throw InputError({.what = "missing column '" + letter + "-coordinate'",
+                      .where = where,
+                      .found = "columns " + base::join(headings, ", "),
+                      .expected = letter + "-coordinate or " + letter + " [m]"});
+  }
+}
+
+// A field may be left out, but not misspelt.
+void refuse_misspelt(const std::vector<Column>& columns, const std::string& where) {
+  std::vector<std::string> unread;
+  for (const auto& column : columns)
+    if (column.meaning.kind == ColumnKind::ignored) unread.push_back(column.heading);
+  for (const auto& field : field::standard_fields()) {
+    if (find(columns, ColumnKind::field, field.name)) continue;
+    const auto near = base::closest_name(field.name, unread);
+    if (!near) continue;
+    throw InputError({.what = "missing column '" + field.name + "'",
+                      .where = where,
+                      .expected = "a heading among " + base::join(known_headings(field.name), ", "),
+                      .advice = "is '" + *near + "' meant?"});
+  }
+}
+
+// The fields of a table: the standard ones in their order, then the others as they come.
+std::vector<field::FieldInfo> number_fields(std::vector<Column>& columns) {
+  std::vector<field::FieldInfo> fields;
+  const auto take = [&](Column& column) {
+    column.target = static_cast<std::ptrdiff_t>(fields.size());
+    fields.push_back(field::field_info(column.meaning.field, column.meaning.si));
+  };
+  for (const auto& info : field::standard_fields())
+    for (auto& column : columns)
+      if (column.meaning.field == info.name) take(column);
+  for (auto& column : columns)
+    if (column.meaning.kind == ColumnKind::field && column.target < 0) take(column);
+  return fields;
 }
 
 std::vector<Column> read_columns(std::string_view header, bool commas, const std::string& where) {
@@ -111,16 +159,8 @@ std::vector<Column> read_columns(std::string_view header, bool commas, const std
     }
     columns.push_back(std::move(column));
   }
-  require(columns, ColumnKind::x, "x-coordinate", {"x-coordinate", "x [m]"}, where);
-  require(columns, ColumnKind::y, "y-coordinate", {"y-coordinate", "y [m]"}, where);
-  require(columns, ColumnKind::z, "z-coordinate", {"z-coordinate", "z [m]"}, where);
-  const auto fields = field::standard_fields();
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    require(columns, ColumnKind::field, fields[i].name, known_headings(fields[i].name), where);
-    for (auto& column : columns) {
-      if (column.meaning.field == fields[i].name) column.target = static_cast<std::ptrdiff_t>(i);
-    }
-  }
+  require_place(columns, where);
+  refuse_misspelt(columns, where);
   return columns;
 }
 
@@ -163,9 +203,8 @@ struct Table {
   std::vector<float> values;  //!< (n_cells, n_fields)
 };
 
-Table read_table(Lines& lines, const std::vector<Column>& columns, bool commas, std::size_t n_expected,
-                 const std::string& path) {
-  const std::size_t n_fields = field::standard_fields().size();
+Table read_table(Lines& lines, const std::vector<Column>& columns, std::size_t n_fields, bool commas,
+                 std::size_t n_expected, const std::string& path) {
   Table table;
   table.centre.reserve(3 * n_expected);
   table.values.reserve(n_fields * n_expected);
@@ -213,26 +252,28 @@ std::string case_name(const std::filesystem::path& path) {
 }  // namespace
 
 CfdCase read_fluent_ascii(const std::filesystem::path& path) {
-  const auto text = read_text_file(path);
+  const auto text = io::read_text_file(path);
   Lines lines(text);
   const auto header = lines.next();
   if (!header)
     throw InputError({.what = "empty table", .where = path.string(), .expected = "a line of headings"});
   const bool commas = header->find(',') != std::string_view::npos;
-  const auto columns = read_columns(*header, commas, path.string() + ":" + std::to_string(lines.number()));
-  const auto table = read_table(lines, columns, commas, count_lines(text), path.string());
-  const auto fields = field::standard_fields();
+  auto columns = read_columns(*header, commas, path.string() + ":" + std::to_string(lines.number()));
+  auto fields = number_fields(columns);
+  const auto table = read_table(lines, columns, fields.size(), commas, count_lines(text), path.string());
   const auto n_cells = static_cast<Eigen::Index>(table.centre.size() / 3);
   if (n_cells == 0) throw InputError({.what = "table without cells", .where = path.string()});
 
   CfdCase result;
+  result.record.source = path.filename().string();
+  result.record.source_digest = base::sha256_file(path);
   result.record.inputs.name = case_name(path);
   result.record.inputs.load = std::nan("");
-  result.fields.assign(fields.begin(), fields.end());
   result.centre = Eigen::Map<const MatrixD>(table.centre.data(), n_cells, 3);
   result.volume = table.volume;
   result.values =
       ConstMapF(table.values.data(), n_cells, static_cast<Eigen::Index>(fields.size())).transpose();
+  result.fields = std::move(fields);
   return result;
 }
 

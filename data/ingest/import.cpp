@@ -1,6 +1,7 @@
 #include "elrom/ingest/import.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "conform.hpp"
 #include "elrom/base/digest.hpp"
@@ -67,8 +68,31 @@ class Exchange {
   std::optional<Resampler> there_, back_;
 };
 
+// Who has other fields is told how to have them.
+void expect_standard_fields(const CfdCase& first) {
+  std::vector<std::string> names, others;
+  for (const auto& info : first.fields) names.push_back(info.name);
+  const auto standard = field::standard_fields();
+  std::ranges::copy_if(names, std::back_inserter(others), [&](const std::string& name) {
+    return std::ranges::find(standard, name, &field::FieldInfo::name) == standard.end();
+  });
+  for (const auto& info : standard) {
+    if (std::ranges::find(names, info.name) != names.end()) continue;
+    const auto near = base::closest_name(info.name, others);
+    throw InputError({.what = "missing field '" + info.name + "'",
+                      .where = first.record.source,
+                      .found = names.empty() ? "no fields" : base::join(names, ", "),
+                      .advice = (near ? "is '" + *near + "' meant? " : "") +
+                                (names.empty() ? "a table's own fields need a unit: 'name [unit]'"
+                                               : "or a store of these: --fields " + base::join(names, ","))});
+  }
+}
+
 std::vector<field::FieldInfo> fields_of_new_store(const ImportOptions& options, const CfdCase& first) {
-  if (options.fields.empty()) return {field::standard_fields().begin(), field::standard_fields().end()};
+  if (options.fields.empty()) {
+    expect_standard_fields(first);
+    return {field::standard_fields().begin(), field::standard_fields().end()};
+  }
   return field::choose_fields<InputError>(first.fields, options.fields, first.record.source);
 }
 

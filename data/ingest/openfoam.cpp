@@ -19,9 +19,9 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/foam/foam_file.hpp"
+#include "elrom/foam/foam_mesh.hpp"
 #include "elrom/ingest/cfd_case.hpp"
-#include "foam_file.hpp"
-#include "foam_mesh.hpp"
 
 namespace elrom::ingest {
 namespace {
@@ -39,7 +39,7 @@ std::vector<Instant> find_instants(const fs::path& directory, const std::string&
   for (const auto& entry : fs::directory_iterator(directory)) {
     const auto time = base::to_double(entry.path().filename().string());
     if (!entry.is_directory() || !time || !(*time > 0)) continue;
-    if (FoamFile::exists(entry.path() / ("U." + gas))) instants.push_back({*time, entry.path()});
+    if (foam::FoamFile::exists(entry.path() / ("U." + gas))) instants.push_back({*time, entry.path()});
   }
   if (instants.empty()) {
     throw InputError({.what = "no instants to average",
@@ -80,7 +80,8 @@ struct Parcels {
 // `coordinates` holds (a b c d) cell face point, `positions`
 // holds (x y z) cell: the cell is all that is needed.
 std::vector<std::size_t> read_parcel_cells(const fs::path& cloud, std::size_t n_cells) {
-  FoamFile file(FoamFile::exists(cloud / "coordinates") ? cloud / "coordinates" : cloud / "positions");
+  foam::FoamFile file(foam::FoamFile::exists(cloud / "coordinates") ? cloud / "coordinates"
+                                                                    : cloud / "positions");
   file.to_body();
   std::vector<std::size_t> cells(file.list_size(0, 9));
   file.expect("(");
@@ -97,7 +98,7 @@ std::vector<std::size_t> read_parcel_cells(const fs::path& cloud, std::size_t n_
 }
 
 std::vector<double> read_parcel_scalars(const fs::path& path, std::size_t n) {
-  FoamFile file(path);
+  foam::FoamFile file(path);
   file.to_body();
   auto values = file.scalars(n);
   const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !(value > 0); });
@@ -110,7 +111,7 @@ Parcels read_parcels(const fs::path& cloud, std::size_t n_cells) {
   parcels.cell = read_parcel_cells(cloud, n_cells);
   const auto n = parcels.cell.size();
   if (n == 0) return parcels;
-  FoamFile velocity(cloud / "U");
+  foam::FoamFile velocity(cloud / "U");
   velocity.to_body();
   parcels.velocity = velocity.vectors(n);
   parcels.diameter = read_parcel_scalars(cloud / "d", n);
@@ -121,7 +122,7 @@ Parcels read_parcels(const fs::path& cloud, std::size_t n_cells) {
 
 /// internalField of a volume field, (n_cells, 1 or 3).
 MatrixD read_internal_field(const fs::path& path, std::size_t n_cells, int n_components) {
-  FoamFile file(path);
+  foam::FoamFile file(path);
   file.seek_required("internalField");
   const auto rows = static_cast<Eigen::Index>(n_cells);
   const auto kind = file.token();
@@ -141,7 +142,7 @@ MatrixD read_internal_field(const fs::path& path, std::size_t n_cells, int n_com
 /// Sums over instants.
 class Averages {
  public:
-  explicit Averages(FoamMesh mesh)
+  explicit Averages(foam::FoamMesh mesh)
       : mesh_(std::move(mesh)),
         n_(mesh_.centre.rows()),
         gas_momentum_(MatrixD::Zero(n_, 3)),
@@ -188,7 +189,7 @@ class Averages {
     }
     return result.cast<float>();
   }
-  [[nodiscard]] const FoamMesh& mesh() const { return mesh_; }
+  [[nodiscard]] const foam::FoamMesh& mesh() const { return mesh_; }
 
  private:
   /// @return the solids' share of each cell at this instant
@@ -222,7 +223,7 @@ class Averages {
     return std::nan("");
   }
 
-  FoamMesh mesh_;
+  foam::FoamMesh mesh_;
   Eigen::Index n_;
   MatrixD gas_momentum_, solid_momentum_;
   Eigen::VectorXd gas_weight_, mass_, mass_diameter_, fraction_, pressure_;
@@ -239,16 +240,16 @@ std::string directory_name(const fs::path& directory) {
 }  // namespace
 
 CfdCase read_openfoam(const std::filesystem::path& directory) {
-  FoamFile properties(directory / "constant" / "transportProperties");
+  foam::FoamFile properties(directory / "constant" / "transportProperties");
   const auto gas = properties.dictionary_word("continuousPhase");
   const double gas_density = properties.dictionary_number("rho." + gas);
   const auto instants = find_instants(directory, gas);
-  Averages averages(read_poly_mesh(directory / "constant" / "polyMesh"));
+  Averages averages(foam::read_poly_mesh(directory / "constant" / "polyMesh"));
   for (const auto& instant : instants) averages.add(instant, gas);
 
   const auto fields = field::standard_fields();
   CfdCase result;
-  result.record.inputs.name = directory_name(directory);
+  result.record.source = result.record.inputs.name = directory_name(directory);
   result.record.inputs.load = std::nan("");
   result.record.averaging_window_s = instants.back().time - instants.front().time;
   result.fields.assign(fields.begin(), fields.end());

@@ -7,6 +7,7 @@
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/field/hexahedron.hpp"
 
 namespace elrom::field {
 
@@ -28,26 +29,6 @@ std::vector<double> Mesh::plane_heights() const {
 }
 
 namespace {
-
-using Point = std::array<double, 3>;
-
-double tetrahedron_volume(const Point& o, const Point& a, const Point& b, const Point& c) {
-  const auto d = [&](const Point& p, std::size_t i) { return p[i] - o[i]; };
-  return (d(a, 0) * (d(b, 1) * d(c, 2) - d(b, 2) * d(c, 1)) +
-          d(a, 1) * (d(b, 2) * d(c, 0) - d(b, 0) * d(c, 2)) +
-          d(a, 2) * (d(b, 0) * d(c, 1) - d(b, 1) * d(c, 0))) /
-         6;
-}
-
-// Signed sum over six tetrahedra around the diagonal 0-6 (VTK numbering); exact for a hexahedron whose faces
-// are flat.
-double hexahedron_volume(const std::array<Point, 8>& p) {
-  static constexpr std::array<std::array<std::size_t, 2>, 6> edges{
-      {{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}}};
-  double volume = 0;
-  for (const auto& [a, b] : edges) volume += tetrahedron_volume(p[0], p[a], p[b], p[6]);
-  return volume;
-}
 
 struct Lattice {
   std::size_t n_x, n_y, n_planes;
@@ -109,7 +90,7 @@ Mesh make_furnace_mesh(const TaperedFurnace& furnace, std::size_t n_x, std::size
   mesh.corners.reserve(8 * mesh.n_cells());
   for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
     const auto corners = lattice.corners(cell % n_x, cell / n_x % n_y, cell / mesh.n_columns);
-    std::array<Point, 8> p;
+    std::array<Corner, 8> p;
     for (std::size_t c = 0; c < 8; ++c) {
       for (Eigen::Index i = 0; i < 3; ++i)
         p[c][static_cast<std::size_t>(i)] = mesh.points(static_cast<Eigen::Index>(corners[c]), i);

@@ -1,9 +1,12 @@
 #include "elrom/io/vtkhdf.hpp"
 
+#include <algorithm>
+
 namespace elrom::io {
 namespace {
 
-constexpr std::uint8_t vtk_hexahedron = 12;
+// A cell whose corners are one point is shown as that point.
+constexpr std::uint8_t vtk_hexahedron = 12, vtk_poly_vertex = 2;
 constexpr std::size_t n_corners = 8;
 
 Hdf5Group begin(const Hdf5Group& file, std::size_t n_points, std::size_t n_cells) {
@@ -30,6 +33,11 @@ VtkHexahedra::VtkHexahedra(std::vector<float> points_of_cells, std::vector<std::
   offsets.resize(n + 1);
   for (std::size_t i = 0; i <= n; ++i) offsets[i] = static_cast<std::int32_t>(i * n_corners);
   types.assign(n, vtk_hexahedron);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto* cell = connectivity.data() + i * n_corners;
+    if (std::all_of(cell, cell + n_corners, [&](std::int32_t point) { return point == *cell; }))
+      types[i] = vtk_poly_vertex;
+  }
 }
 
 Hdf5Group write_vtkhdf(const Hdf5Group& file, const VtkHexahedra& grid) {

@@ -47,6 +47,7 @@ std::vector<PlaneEdges> plane_edges(const field::Mesh& mesh) {
     for (std::size_t i = i_plane * mesh.n_columns * 8; i < (i_plane + 1) * mesh.n_columns * 8; ++i)
       sums[i % 8 / 4] += mesh.points(mesh.corners[i], 2);
     edges[i_plane] = {sums[0] / (4.0 * mesh.n_columns), sums[1] / (4.0 * mesh.n_columns)};
+    if (!(edges[i_plane].high > edges[i_plane].low)) return edges_from_centres(mesh);  // cells are points
   }
   return edges;
 }

@@ -74,6 +74,7 @@ const std::vector<Share>& shares() {
       {"cases_toml", 10, 1000},
       {"fluent_ascii", 10, 1000},
       {"foam", 10, 1000},
+      {"vtu", 10, 2000},
       // Each of their inputs costs a process, since HDF5 is not to be trusted.
       {"collisions", 1, 40000},
       {"collisions_content", 1, 400},

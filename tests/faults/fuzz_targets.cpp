@@ -4,9 +4,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../data/ingest/foam_file.hpp"
+#include "../../data/ingest/vtu.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/field/boundary_conditions.hpp"
+#include "elrom/foam/foam_file.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "fuzz_bundles.hpp"
 #include "fuzz_collisions.hpp"
@@ -45,10 +46,17 @@ void fuzz_fluent(Bytes input) {
 
 void fuzz_foam(Bytes input) {
   try {
-    ingest::FoamFile file(memory_file("foam", input));
+    foam::FoamFile file(memory_file("foam", input));
     file.to_body();
     (void)file.vectors();
     if (file.seek("internalField")) (void)file.scalars();
+  } catch (const Error&) {
+  }
+}
+
+void fuzz_vtu(Bytes input) {
+  try {
+    (void)ingest::group_into_planes(ingest::read_vtu(memory_file("mesh.vtu", input)), {}, "mesh.vtu");
   } catch (const Error&) {
   }
 }
@@ -63,6 +71,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
                                                   {"cases_toml", fuzz_cases_toml},
                                                   {"fluent_ascii", fuzz_fluent},
                                                   {"foam", fuzz_foam},
+                                                  {"vtu", fuzz_vtu},
                                                   {"collisions", fuzz_collisions},
                                                   {"collisions_content", fuzz_collisions_content},
                                                   {"collision_model", fuzz_collision_model},

@@ -19,7 +19,7 @@ struct FuzzTarget {
 };
 
 /// bundle (a file of any bytes), bundle_content (a bundle with true digests whose texts and tensors follow
-/// the input), cases_csv, cases_json, cases_toml, fluent_ascii, foam; collisions (a file of any
+/// the input), cases_csv, cases_json, cases_toml, fluent_ascii, foam, vtu; collisions (a file of any
 /// bytes), collisions_content (a set whose values, shapes and settings follow the input), collision_model and
 /// collision_model_content as those of bundles.
 [[nodiscard]] const std::vector<FuzzTarget>& fuzz_targets();

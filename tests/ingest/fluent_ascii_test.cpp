@@ -104,6 +104,26 @@ TEST(FluentAscii, MissingFieldIsNamedWithTheNearestHeading) {
   EXPECT_THAT(message, AllOf(HasSubstr("missing column 'pressure'"), HasSubstr("is 'presure' meant?")));
 }
 
+TEST(FluentAscii, ColumnsWithAUnitAreFieldsOfTheirOwn) {
+  const test::TemporaryFolder folder;
+  const auto found = read_fluent_ascii(
+      folder.write("a.csv", "heat loss [MW],x,y,z,cell number,pressure [kPa],swirl [-]\n2,0,0,0,7,3,4\n"));
+
+  ASSERT_EQ(found.fields.size(), 3u);  // the known one first
+  EXPECT_EQ(found.fields[0].name, "pressure");
+  EXPECT_EQ(found.fields[1].name, "heat loss");
+  EXPECT_EQ(found.fields[1].unit, "W");
+  EXPECT_EQ(found.fields[2].unit, "1");
+  EXPECT_THAT(std::vector<float>(found.values.data(), found.values.data() + 3),
+              ::testing::ElementsAre(3000.f, 2e6f, 4.f));
+  EXPECT_THAT(message_of("x,y,z,a/b [Pa]\n0,0,0,1\n"), HasSubstr("no name for a field"));
+  EXPECT_THAT(message_of("x,y,z,a [furlong]\n0,0,0,1\n"), HasSubstr("furlong"));
+}
+
+TEST(FluentAscii, MissingPlaceIsRefused) {
+  EXPECT_THAT(message_of("x,y,pressure\n0,0,1\n"), HasSubstr("missing column 'z-coordinate'"));
+}
+
 TEST(FluentAscii, WrongUnitIsRefused) {
   const auto message =
       message_of(without(header, "pressure", "pressure [um]") + "1,0,0,0,1,1,1,1,1,1,1,1,1\n");

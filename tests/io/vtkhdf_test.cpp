@@ -39,6 +39,12 @@ TEST(VtkHdf, HoldsTheGridAsVtkWantsIt) {
   EXPECT_THAT(vtk.dataset("Types").read<std::uint8_t>(), ElementsAre(12, 12));
 }
 
+TEST(VtkHdf, ACellWhoseCornersAreOnePointIsShownAsAPoint) {
+  const VtkHexahedra grid({0, 0, 0, 1, 0, 0}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0});
+
+  EXPECT_THAT(grid.types, ElementsAre(2, 12));
+}
+
 TEST(VtkHdf, APackedGridReadsTheSame) {
   const test::TemporaryFolder folder;
   const auto grid = two_cubes();

@@ -91,6 +91,17 @@ TEST(Audit, FlowsAreSumsOverThePlane) {
   EXPECT_NEAR(result.planes[0].solid_flow, 400, 1e-3);
 }
 
+TEST(Audit, PlanesOfPointsReachHalfwayToTheNext) {
+  SmallCase c;
+  c.mesh.points = c.mesh.centre;
+  for (std::int32_t cell = 0; cell < 8; ++cell) c.mesh.corners.insert(c.mesh.corners.end(), 8, cell);
+
+  const auto result = audit(c.view(), c.settings);
+
+  EXPECT_DOUBLE_EQ(result.planes[2].area, 3.0);
+  EXPECT_NEAR(result.planes[0].gas_flow, 1.6 + 1.8, 1e-6);
+}
+
 TEST(Audit, GasBalanceIsDrawnOnlyClearOfTheOpenings) {
   const SmallCase c;
 

@@ -109,6 +109,37 @@ TEST(Figures, QuadrilateralsTileTheCut) {
   }
 }
 
+TEST(Figures, AMeshInOnePlaneIsCutThroughItsCells) {
+  auto mesh = field::make_furnace_mesh({.bottom_width_m = 10.6}, 3, 3, 2);
+  mesh.n_planes = 1;
+  mesh.n_columns = 18;
+
+  const auto cuts = middle_cuts(mesh);
+
+  ASSERT_EQ(cuts.size(), 2u);
+  EXPECT_EQ(cuts[0].title, "y = 13.80 m");
+  EXPECT_EQ(cuts[0].cells.size(), 6u);
+  EXPECT_THAT(cuts[0].cells[0], testing::ElementsAre(3, 3));
+  EXPECT_FLOAT_EQ(cuts[0].corners[0][4], 10.6F / 3);  // right, top
+  EXPECT_FLOAT_EQ(cuts[0].corners[0][5], 23.5F);
+}
+
+TEST(Figures, AFlatMeshIsShownWhole) {
+  auto mesh = field::make_furnace_mesh({.bottom_width_m = 10.6}, 3, 2, 1);
+  const auto drawn = middle_cuts(mesh);
+  mesh.points = mesh.centre;  // only centres are known: cells are points
+  for (std::size_t i = 0; i < mesh.corners.size(); ++i) mesh.corners[i] = static_cast<std::int32_t>(i / 8);
+  const auto as_points = middle_cuts(mesh);
+
+  ASSERT_EQ(drawn.size(), 1u);
+  EXPECT_EQ(drawn[0].cells.size(), 6u);
+  EXPECT_EQ(drawn[0].title, "z = 23.50 m");
+  EXPECT_EQ(drawn[0].vertical, "y [m]");
+  ASSERT_EQ(as_points.size(), 1u);
+  EXPECT_EQ(as_points[0].cells, drawn[0].cells);
+  EXPECT_GT(as_points[0].corners[0][2], as_points[0].corners[0][0]);
+}
+
 TEST(Figures, CutsBetweenTwoRowsShowTheirMean) {
   const auto cuts = middle_cuts(small_mesh());
   std::vector<float> cells(12);

@@ -80,6 +80,89 @@ Cut middle_cut(const field::Mesh& mesh, const Grid& grid, int axis) {
   return cut;
 }
 
+// Whether columns come row by row; those of a mesh of somebody's own may not.
+bool has_rows(const field::Mesh& mesh, const Grid& grid) {
+  const double same_row = 1e-6 * (mesh.centre.col(1).maxCoeff() - mesh.centre.col(1).minCoeff());
+  for (std::size_t column = 0; column < mesh.n_columns; ++column) {
+    const auto first = column - column % grid.n_x;
+    if (std::abs(mesh.centre(static_cast<Eigen::Index>(column), 1) -
+                 mesh.centre(static_cast<Eigen::Index>(first), 1)) > same_row)
+      return false;
+  }
+  return true;
+}
+
+// The box around each cell; a cell that is a point gets its share of the box around all.
+class CellBoxes {
+ public:
+  explicit CellBoxes(const field::Mesh& mesh) : mesh_(mesh) {
+    double size = 1;
+    int n_axes = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(extent(axis) > 0)) continue;
+      size *= extent(axis);
+      ++n_axes;
+    }
+    point_ = n_axes > 0 ? std::pow(size / static_cast<double>(mesh.n_cells()), 1.0 / n_axes) : 1;
+  }
+
+  /// Between the outermost centres [m]
+  [[nodiscard]] double extent(int axis) const {
+    return mesh_.centre.col(axis).maxCoeff() - mesh_.centre.col(axis).minCoeff();
+  }
+  [[nodiscard]] std::array<double, 2> range(std::size_t cell, int axis) const {
+    const double centre = mesh_.centre(static_cast<Eigen::Index>(cell), axis);
+    double low = centre, high = centre;
+    for (std::size_t i = 8 * cell; i < std::min(8 * cell + 8, mesh_.corners.size()); ++i) {
+      low = std::min(low, mesh_.points(mesh_.corners[i], axis));
+      high = std::max(high, mesh_.points(mesh_.corners[i], axis));
+    }
+    if (low == high) return {centre - point_ / 2, centre + point_ / 2};
+    return {low, high};
+  }
+
+ private:
+  const field::Mesh& mesh_;
+  double point_ = 1;  //!< side of a cell that is a point [m]
+};
+
+// The centre nearest to the middle of an axis, so that a cut there has a cell.
+double middle_of(const field::Mesh& mesh, int axis) {
+  const auto x = mesh.centre.col(axis);
+  const double middle = 0.5 * (x.minCoeff() + x.maxCoeff());
+  Eigen::Index nearest = 0;
+  (x.array() - middle).abs().minCoeff(&nearest);
+  return x(nearest);
+}
+
+// The cells that the middle plane across an axis goes through, as boxes.
+Cut cut_through(const field::Mesh& mesh, const CellBoxes& boxes, int across) {
+  static constexpr std::array<const char*, 3> labels{"x [m]", "y [m]", "z [m]"};
+  const int u = across == 0 ? 1 : 0, v = across == 2 ? 1 : 2;
+  const double middle = middle_of(mesh, across);
+  Cut cut{.title = fmt::format("{} = {:.2f} m", labels[static_cast<std::size_t>(across)][0], middle),
+          .horizontal = labels[static_cast<std::size_t>(u)],
+          .vertical = labels[static_cast<std::size_t>(v)]};
+  for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
+    const auto [low, high] = boxes.range(cell, across);
+    if (middle < low || middle >= high) continue;
+    const auto [left, right] = boxes.range(cell, u);
+    const auto [bottom, top] = boxes.range(cell, v);
+    const auto l = static_cast<float>(left), r = static_cast<float>(right), b = static_cast<float>(bottom),
+               t = static_cast<float>(top);
+    cut.cells.push_back({cell, cell});
+    cut.corners.push_back({l, b, r, b, r, t, l, t});
+  }
+  return cut;
+}
+
+std::vector<Cut> cuts_through(const field::Mesh& mesh) {
+  const CellBoxes boxes(mesh);
+  for (const int axis : {2, 1, 0})
+    if (!(boxes.extent(axis) > 0)) return {cut_through(mesh, boxes, axis)};
+  return {cut_through(mesh, boxes, 1), cut_through(mesh, boxes, 0)};
+}
+
 std::size_t bin_of(double value, double low, double high, std::size_t n_bins) {
   const double position = (value - low) / (high - low) * static_cast<double>(n_bins);
   if (!(position > 0)) return 0;  // also where the value is not a number
@@ -90,6 +173,7 @@ std::size_t bin_of(double value, double low, double high, std::size_t n_bins) {
 
 std::vector<Cut> middle_cuts(const field::Mesh& mesh) {
   const auto grid = grid_of(mesh);
+  if (mesh.n_planes == 1 || !has_rows(mesh, grid)) return cuts_through(mesh);
   std::vector<Cut> cuts;
   if (grid.n_x > 1 || grid.n_y == 1) cuts.push_back(middle_cut(mesh, grid, 0));
   if (grid.n_y > 1) cuts.push_back(middle_cut(mesh, grid, 1));

@@ -56,6 +56,7 @@ Json pack_cut(const Cut& cut) {
     for (std::size_t k = 0; k < quad.size(); ++k) append_u16(bytes, (quad[k] - low[k % 2]) / step);
   return {{"title", cut.title},
           {"horizontal", cut.horizontal},
+          {"vertical", cut.vertical},
           {"low", {low[0], low[1]}},
           {"step", step},
           {"corners", base64(bytes)}};

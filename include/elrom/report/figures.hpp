@@ -12,17 +12,19 @@
 
 namespace elrom::report {
 
-/// A vertical cut: cells in the plane of the cut as quadrilaterals of (horizontal, height) corners.
+/// A cut, as a rule vertical: cells in its plane as quadrilaterals of (horizontal, vertical) corners.
 struct Cut {
   std::string title;       ///< "y = 13.80 m"
   std::string horizontal;  ///< "x [m]"
+  std::string vertical = "z [m]";
   //! A cut between two rows of cells shows their mean; else both equal
   std::vector<std::array<std::size_t, 2>> cells;
   //! [m], counter-clockwise from lower left, same length as cells
   std::vector<std::array<float, 8>> corners;
 };
 
-/// Middle cuts along x and along y; a mesh of one row has one cut.
+/// Middle cuts along x and along y; a mesh of one row has one cut. Where columns come in no rows, or there is
+/// one plane: boxes around the cells that the middle planes go through; a flat mesh has one cut, all of it.
 [[nodiscard]] std::vector<Cut> middle_cuts(const field::Mesh& mesh);
 /// Values of a field on all cuts, one after the other.
 [[nodiscard]] std::vector<float> on_cuts(const std::vector<Cut>& cuts, std::span<const float> cells);

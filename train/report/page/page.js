@@ -162,7 +162,7 @@
     pen.translate(10, (margin.top + floor) / 2);
     pen.rotate(-Math.PI / 2);
     pen.textAlign = "center";
-    pen.fillText("z [m]", 0, 0);
+    pen.fillText(cut.vertical, 0, 0);
     pen.restore();
   }
   function drawBar(pen, scale, field, width, top) {

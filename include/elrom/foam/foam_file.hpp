@@ -11,7 +11,7 @@
 
 #include "elrom/math/matrix.hpp"
 
-namespace elrom::ingest {
+namespace elrom::foam {
 
 /// A file read whole, with a reading position. Every throw is
 /// an InputError naming file, line, found and expected.
@@ -27,6 +27,12 @@ class FoamFile {
   [[nodiscard]] bool seek(std::string_view keyword);
   /// The same for an entry that must be there.
   void seek_required(std::string_view keyword);
+
+  /// `class` of the header; empty without one.
+  [[nodiscard]] const std::string& class_name() const { return class_; }
+  /// All behind the header, with another value of a top-level entry (without its semicolon). Where the rest
+  /// repeats the entry by `$keyword`, it gets the value that was there, which patches can hold.
+  [[nodiscard]] std::string body_with(std::string_view keyword, std::string_view value);
 
   [[nodiscard]] bool at_end();
   /// Next word or one of ( ) { } [ ] ; -- comments and blanks are skipped.
@@ -57,8 +63,8 @@ class FoamFile {
   void skip_entry();
   void check_header();
 
-  std::string path_, text_;
+  std::string path_, text_, class_;
   std::size_t at_ = 0, body_ = 0;
 };
 
-}  // namespace elrom::ingest
+}  // namespace elrom::foam

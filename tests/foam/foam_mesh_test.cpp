@@ -1,24 +1,13 @@
-#include "foam_mesh.hpp"
+#include "elrom/foam/foam_mesh.hpp"
 
 #include <gmock/gmock.h>
 
 #include "elrom/base/error.hpp"
+#include "foam_box.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace elrom::ingest {
+namespace elrom::foam {
 namespace {
-
-/// Two hexahedra on each other: widths in x are 2 at z = 0, 4 at z = 1 and 4 at z = 2; depth 1 in y.
-void write_two_cells(const test::TemporaryFolder& folder) {
-  folder.write("points",
-               "12((1 0 0)(3 0 0)(3 1 0)(1 1 0)(0 0 1)(4 0 1)(4 1 1)(0 1 1)(0 0 2)(4 0 2)(4 1 2)(0 1 2))");
-  folder.write("faces",
-               "11(4(4 5 6 7)"  // between the cells
-               "4(0 3 2 1)4(0 1 5 4)4(1 2 6 5)4(2 3 7 6)4(3 0 4 7)"
-               "4(8 9 10 11)4(4 5 9 8)4(5 6 10 9)4(6 7 11 10)4(7 4 8 11))");
-  folder.write("owner", "11(0 0 0 0 0 0 1 1 1 1 1)");
-  folder.write("neighbour", "1(1)");
-}
 
 TEST(FoamMesh, VolumesAndCentresOfAPrismAndABox) {
   const test::TemporaryFolder folder;
@@ -57,4 +46,4 @@ TEST(FoamMesh, PointsAndCellsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace elrom::ingest
+}  // namespace elrom::foam

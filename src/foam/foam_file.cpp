@@ -1,13 +1,13 @@
-#include "foam_file.hpp"
+#include "elrom/foam/foam_file.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "elrom/base/error.hpp"
-#include "text_file.hpp"
+#include "elrom/io/text_file.hpp"
 
-namespace elrom::ingest {
+namespace elrom::foam {
 namespace {
 
 std::filesystem::path with_gz(const std::filesystem::path& path) { return path.string() + ".gz"; }
@@ -28,7 +28,7 @@ FoamFile::FoamFile(const std::filesystem::path& path) {
         {.what = "missing OpenFOAM file", .where = path.string(), .expected = "it, or it with .gz"});
   }
   path_ = plain ? path.string() : with_gz(path).string();
-  text_ = read_text_file(path_);
+  text_ = io::read_text_file(path_);
   check_header();
 }
 
@@ -42,6 +42,9 @@ void FoamFile::check_header() {
       const auto format = token();
       if (format != "ascii")
         fail("format " + std::string(format), "format ascii (convert with foamFormatConvert)");
+      expect(";");
+    } else if (keyword == "class") {
+      class_ = token();
       expect(";");
     } else {
       skip_entry();
@@ -73,7 +76,29 @@ void FoamFile::skip_entry() {
     if (word == "(" || word == "{" || word == "[") ++depth;
     if (word == ")" || word == "}" || word == "]") --depth;
     if (depth < 0) fail("an unmatched " + std::string(word), "balanced brackets");
-    if (depth == 0 && (word == ";" || word == "}")) return;
+    if (depth == 0 && word == ";") return;
+    if (depth == 0 && word == "}") {  // of a dictionary, or of a uniform list, which ends like any value
+      if (peek() == ";") token();
+      return;
+    }
+  }
+}
+
+std::string FoamFile::body_with(std::string_view keyword, std::string_view value) {
+  seek_required(keyword);
+  skip_blanks();
+  const auto begin = at_;
+  skip_entry();
+  const std::string before = text_.substr(begin, text_.rfind(';', at_ - 1) - begin);
+  std::string body = text_.substr(body_, begin - body_);
+  body.append(value).append(";");
+  const std::string repeated = "$" + std::string(keyword);
+  for (auto from = at_;;) {
+    const auto found = text_.find(repeated, from);
+    body += text_.substr(from, found - from);
+    if (found == std::string::npos) return body;
+    body += before;
+    from = found + repeated.size();
   }
 }
 
@@ -235,4 +260,4 @@ void FoamFile::fail(std::string_view found, std::string_view expected) const {
                     .expected = std::string(expected)});
 }
 
-}  // namespace elrom::ingest
+}  // namespace elrom::foam

@@ -1,12 +1,12 @@
-#include "foam_mesh.hpp"
+#include "elrom/foam/foam_mesh.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "elrom/base/error.hpp"
-#include "foam_file.hpp"
+#include "elrom/foam/foam_file.hpp"
 
-namespace elrom::ingest {
+namespace elrom::foam {
 namespace {
 
 using Eigen::Vector3d;
@@ -35,13 +35,15 @@ Face face_geometry(const std::vector<Vector3d>& corners) {
   return {weight > 0 ? Vector3d(moment / (3 * weight)) : middle, 0.5 * twice_area};
 }
 
-std::vector<Face> read_faces(const std::filesystem::path& folder) {
+/// Fills in points and faces. @return geometry of the faces
+std::vector<Face> read_faces(const std::filesystem::path& folder, FoamMesh& mesh) {
   FoamFile points_file(folder / "points");
   points_file.to_body();
-  const MatrixD points = points_file.vectors();
+  mesh.points = points_file.vectors();
   FoamFile file(folder / "faces");
   file.to_body();
   std::vector<Face> faces(file.list_size(0, 8));
+  mesh.face_begin = {0};
   std::vector<Vector3d> corners;
   file.expect("(");
   for (auto& face : faces) {
@@ -51,12 +53,14 @@ std::vector<Face> read_faces(const std::filesystem::path& folder) {
     file.expect("(");
     for (std::size_t i = 0; i < n; ++i) {
       const auto point = file.label();
-      if (point >= static_cast<std::size_t>(points.rows())) {
-        file.fail("point " + std::to_string(point), "below " + std::to_string(points.rows()));
+      if (point >= static_cast<std::size_t>(mesh.points.rows())) {
+        file.fail("point " + std::to_string(point), "below " + std::to_string(mesh.points.rows()));
       }
-      corners.emplace_back(points.row(static_cast<Eigen::Index>(point)).transpose());
+      mesh.face_points.push_back(point);
+      corners.emplace_back(mesh.points.row(static_cast<Eigen::Index>(point)).transpose());
     }
     file.expect(")");
+    mesh.face_begin.push_back(mesh.face_points.size());
     face = face_geometry(corners);
   }
   file.expect(")");
@@ -81,8 +85,8 @@ class CellSums {
     for (std::size_t i = 0; i < neighbour.size(); ++i) add(neighbour[i], faces[i], -1);
   }
 
-  [[nodiscard]] FoamMesh result(const std::filesystem::path& folder) const {
-    FoamMesh mesh;
+  /// Fills in centres and volumes.
+  void result(FoamMesh& mesh, const std::filesystem::path& folder) const {
     mesh.centre.resize(static_cast<Eigen::Index>(estimate_.size()), 3);
     mesh.volume.resize(estimate_.size());
     for (std::size_t i = 0; i < estimate_.size(); ++i) {
@@ -95,7 +99,6 @@ class CellSums {
       mesh.centre.row(static_cast<Eigen::Index>(i)) = (moment_[i] / volume3_[i]).transpose();
       mesh.volume[i] = volume3_[i] / 3;
     }
-    return mesh;
   }
 
  private:
@@ -124,14 +127,17 @@ std::vector<std::size_t> read_cells_of_faces(const std::filesystem::path& path, 
 }  // namespace
 
 FoamMesh read_poly_mesh(const std::filesystem::path& folder) {
-  const auto faces = read_faces(folder);
-  const auto owner = read_cells_of_faces(folder / "owner", faces.size(), true);
-  const auto neighbour = read_cells_of_faces(folder / "neighbour", faces.size(), false);
+  FoamMesh mesh;
+  const auto faces = read_faces(folder, mesh);
+  mesh.owner = read_cells_of_faces(folder / "owner", faces.size(), true);
+  mesh.neighbour = read_cells_of_faces(folder / "neighbour", faces.size(), false);
+  const auto &owner = mesh.owner, &neighbour = mesh.neighbour;
   if (owner.empty()) throw InputError({.what = "mesh without cells", .where = folder.string()});
   std::size_t n_cells = *std::max_element(owner.begin(), owner.end()) + 1;
   if (!neighbour.empty())
     n_cells = std::max(n_cells, *std::max_element(neighbour.begin(), neighbour.end()) + 1);
-  return CellSums(n_cells, faces, owner, neighbour).result(folder);
+  CellSums(n_cells, faces, owner, neighbour).result(mesh, folder);
+  return mesh;
 }
 
-}  // namespace elrom::ingest
+}  // namespace elrom::foam

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <string>
 
-namespace elrom::ingest {
+namespace elrom::io {
 
 /// Text larger than this when unpacked is refused: a small gzip file may stand for terabytes.
-inline constexpr std::size_t most_text_bytes = std::size_t{4} << 30;
+inline constexpr std::size_t most_unpacked_bytes = std::size_t{4} << 30;
 
 /// @throws InputError when it cannot be read, is a damaged gzip file, or unpacks to more than `most_bytes`
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& path,
-                                         std::size_t most_bytes = most_text_bytes);
+                                         std::size_t most_bytes = most_unpacked_bytes);
 
-}  // namespace elrom::ingest
+}  // namespace elrom::io

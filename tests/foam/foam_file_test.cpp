@@ -1,11 +1,11 @@
-#include "foam_file.hpp"
+#include "elrom/foam/foam_file.hpp"
 
 #include <gmock/gmock.h>
 
 #include "elrom/base/error.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace elrom::ingest {
+namespace elrom::foam {
 namespace {
 
 using ::testing::AllOf;
@@ -57,6 +57,21 @@ TEST(FoamFile, SeekSkipsWholeEntries) {
   EXPECT_DOUBLE_EQ(file.dictionary_number("wanted"), 4);
 }
 
+TEST(FoamFile, AnEntryBehindAUniformListIsFound) {
+  const FoamFileOf source("internalField nonuniform List<scalar> 3{0.5};\nboundaryField {}");
+  EXPECT_TRUE(source.open().seek("boundaryField"));
+}
+
+TEST(FoamFile, AnEntrysValueIsReplacedAndTheRestKept) {
+  const FoamFileOf source(
+      "FoamFile{class volScalarField;}\ndimensions [0 0 0];\na uniform 1;\nb {wall {value $a;} }\n// end\n");
+  auto file = source.open();
+
+  EXPECT_EQ(file.class_name(), "volScalarField");
+  EXPECT_EQ(file.body_with("a", "2(7 8)"),
+            "\ndimensions [0 0 0];\na 2(7 8);\nb {wall {value uniform 1;} }\n// end\n");
+}
+
 TEST(FoamFile, OldStyleDimensionedNumbersAreRead) {
   EXPECT_DOUBLE_EQ(FoamFileOf("rho.air rho.air [1 -3 0 0 0 0 0] 1.2;").open().dictionary_number("rho.air"),
                    1.2);
@@ -79,4 +94,4 @@ TEST(FoamFile, AListThatTheFileCannotHoldCostsNoMemory) {
 }
 
 }  // namespace
-}  // namespace elrom::ingest
+}  // namespace elrom::foam

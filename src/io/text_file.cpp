@@ -1,4 +1,4 @@
-#include "text_file.hpp"
+#include "elrom/io/text_file.hpp"
 
 #include <zlib.h>
 
@@ -8,7 +8,7 @@
 
 #include "elrom/base/error.hpp"
 
-namespace elrom::ingest {
+namespace elrom::io {
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t most_bytes) {
   if (std::filesystem::is_directory(path)) {
@@ -45,4 +45,4 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t most_b
   return text;
 }
 
-}  // namespace elrom::ingest
+}  // namespace elrom::io
