@@ -8,6 +8,8 @@
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/math/statistics.hpp"
+#include "elrom/model/operating_line.hpp"
 #include "robust.hpp"
 
 namespace elrom::ingest {
@@ -17,7 +19,7 @@ constexpr std::size_t fewest_cases = 8;  // to compare cases with each other
 // In units of the features' usual scatter (the 90th percentile of the others' residuals):
 constexpr double suspicious_residual = 2.0;  // no case of a healthy set lies so far out ...
 constexpr double healthy_residual = 1.7;     // ... and nearly all within this
-constexpr double wild_residual = 8.0;        // told even when no unit explains it
+constexpr double wild_residual = 8.0;        // of a measure of the fields: told even when no unit explains it
 constexpr double least_scatter = 0.02;       // 2 %, where cases agree almost exactly
 constexpr double least_gain = 3.0;           // by which a correction must lower the sum of squares
 constexpr double most_square = 30.0;         // a feature far out counts no more than this
@@ -158,16 +160,46 @@ std::vector<UnitMistake> compare_with_others(std::span<const CaseSummary> cases,
   const Usual usual(features, cases);
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const auto residuals = usual.residuals(cases[i], nullptr);
-    const auto worst = farthest(residuals);
-    if (std::abs(residuals[worst]) <= suspicious_residual) continue;
+    if (std::abs(residuals[farthest(residuals)]) <= suspicious_residual) continue;
     if (const auto* cause = best_correction(usual, features, cases[i], corrections, residuals)) {
       mistakes.push_back({i, cause->quantity, cause->description, true});
-    } else if (std::abs(residuals[worst]) > wild_residual) {
+      continue;
+    }
+    // Inputs have a test of their own (far_inputs).
+    auto of_fields = residuals;
+    std::fill_n(of_fields.begin(), cases[i].schema.size(), 0.0);
+    const auto worst = farthest(of_fields);
+    if (std::abs(of_fields[worst]) > wild_residual) {
       mistakes.push_back({i, features.infos()[worst].name,
                           "far from the other cases at this load (" +
-                              base::rounded(std::abs(residuals[worst]), 2) + " times their usual scatter)",
+                              base::rounded(std::abs(of_fields[worst]), 2) + " times their usual scatter)",
                           false});
     }
+  }
+  return mistakes;
+}
+
+/// What lies far from what the case's other inputs make usual, by the guard's own test.
+std::vector<UnitMistake> far_inputs(std::span<const CaseSummary> cases) {
+  const auto n = static_cast<Eigen::Index>(cases.size());
+  const auto& schema = cases[0].schema;
+  MatrixD inputs(n, static_cast<Eigen::Index>(schema.size()));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& values = cases[static_cast<std::size_t>(i)].inputs;
+    if (values.size() != schema.size()) return {};
+    inputs.row(i) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), inputs.cols());
+  }
+  std::vector<UnitMistake> mistakes;
+  const auto line = inputs.allFinite() ? model::OperatingLine(inputs) : model::OperatingLine();
+  if (!line.knows()) return mistakes;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto usual = line.left_out(i);
+    const auto distance = [&](std::size_t k) { return usual[k].distance(cases[i].inputs[k]); };
+    const auto all = math::all_rows(schema.size());
+    const auto worst = *std::ranges::max_element(all, {}, distance);
+    if (distance(worst) <= line.far_limit()) continue;
+    mistakes.push_back({i, schema[worst].name,
+                        model::unusual_text(schema[worst], cases[i].inputs[worst], usual[worst]), false});
   }
   return mistakes;
 }
@@ -218,13 +250,16 @@ std::vector<UnitMistake> find_unit_mistakes(std::span<const CaseSummary> cases) 
   if (cases.empty()) return {};
   const CaseFeatures features(cases[0].schema);
   std::vector<UnitMistake> mistakes;
+  const auto told = [&](std::size_t i) {
+    return std::any_of(mistakes.begin(), mistakes.end(), [&](const UnitMistake& m) { return m.i_case == i; });
+  };
   if (cases.size() >= fewest_cases) {
     mistakes = compare_with_others(cases, features, possible_corrections(cases[0].schema, cases[0].fields));
+    for (auto& mistake : far_inputs(cases))
+      if (!told(mistake.i_case)) mistakes.push_back(std::move(mistake));
   }
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const bool told =
-        std::any_of(mistakes.begin(), mistakes.end(), [&](const UnitMistake& m) { return m.i_case == i; });
-    if (told) continue;
+    if (told(i)) continue;
     if (auto mistake = against_physics(cases[i], i, features)) mistakes.push_back(std::move(*mistake));
   }
   return mistakes;

@@ -10,6 +10,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
+#include "elrom/math/statistics.hpp"
 #include "model_parts.hpp"
 
 namespace elrom::model {
@@ -18,10 +19,12 @@ namespace {
 constexpr base::EnumNames<Verdict, 3> verdicts{
     "verdict", {{Verdict::inside, "inside"}, {Verdict::edge, "edge"}, {Verdict::outside, "outside"}}};
 constexpr std::size_t n_nearest = 3;
-constexpr double edge_margin = 0.1;       // of an input's trained width: beyond it a case is outside
-constexpr double edge_p_value = 0.05;     // rarer than this among the training cases: edge
-constexpr double outside_distance = 1.5;  // times the loneliest training case's distance: outside
-constexpr double rounding = 1e-9;         // relative: unit conversions must not push a case out of range
+constexpr double edge_margin = 0.1;        // trained widths between edge and outside
+constexpr double most_edge_excess = 0.25;  // trained widths: beyond it a case is at the edge in any event
+constexpr double edge_share = 0.01;        // of the training cases, by range and by distance: edge
+constexpr double least_share = 0.05;       // what few cases cannot tell from chance is no edge
+constexpr double outside_distance = 1.5;   // times the loneliest training case's distance: outside
+constexpr double rounding = 1e-9;          // relative: unit conversions must not push a case out of range
 constexpr double farthest_difference = 1e150;
 constexpr double constant_scale = 1e-2;  // of its value: the unit of distance for an input that never changed
 
@@ -90,20 +93,33 @@ std::string range_text(const field::InputInfo& info, double value, const Range& 
          show(range.high) + ")";
 }
 
-std::string reason_text(const Assessment& assessment, double loneliest) {
-  if (!assessment.out_of_range.empty()) {
-    std::string text = assessment.out_of_range.front();
-    const auto more = assessment.out_of_range.size() - 1;
-    if (more > 0) text += " and " + std::to_string(more) + (more == 1 ? " other input" : " other inputs");
-    text += more > 0 ? " lie " : " lies ";
-    return text + (assessment.verdict == Verdict::outside ? "outside" : "just outside") +
-           " the trained range";
+/// ' and 2 other inputs'
+std::string and_others(std::size_t n) {
+  if (n < 2) return "";
+  return " and " + std::to_string(n - 1) + (n == 2 ? " other input" : " other inputs");
+}
+
+std::string range_reason(const Assessment& assessment, std::string_view how) {
+  const auto n = assessment.out_of_range.size();
+  return assessment.out_of_range.front() + and_others(n) + (n > 1 ? " lie " : " lies ") + std::string(how) +
+         " the trained range";
+}
+
+/// What the verdict rests on. @param range that an input's range alone makes it
+std::string reason_text(const Assessment& assessment, Verdict range, double loneliest) {
+  if (range == Verdict::outside) return range_reason(assessment, "outside");
+  if (!assessment.unusual.empty()) {
+    const auto more = assessment.unusual.size() - 1;
+    return assessment.unusual.front() +
+           (more > 0 ? " (and " + std::to_string(more) + " more such)" : std::string());
+  }
+  if (range == Verdict::edge) return range_reason(assessment, "just outside");
+  if (assessment.verdict == Verdict::inside) {
+    return (assessment.out_of_range.empty() ? "every input is in its trained range"
+                                            : range_reason(assessment, "within a hair of")) +
+           " and the case is as near to training cases as they are to each other";
   }
   const std::string distance = base::rounded(assessment.distance, 3);
-  if (assessment.verdict == Verdict::inside) {
-    return "every input is in its trained range and the case is as near to training cases as they are to "
-           "each other";
-  }
   return "each input is in its trained range, but their combination is unusual: distance " + distance +
          " to the nearest training cases (the loneliest of them: " + base::rounded(loneliest, 3) + ")";
 }
@@ -120,7 +136,7 @@ Guard::Guard(const field::InputSchema& schema, const MatrixD& inputs, std::vecto
   check(static_cast<std::size_t>(inputs_.cols()) == schema_.size(), "guard: one column an input");
   if (n == 0 || !inputs_.allFinite())
     throw InputError("the guard needs finite inputs of at least one training case");
-  find_ranges();
+  learn_inputs();
   const auto scales = scales_of(inputs_);
   for (std::size_t i = 0; n > 1 && i < n; ++i) {
     auto others = distances(inputs_, scales, inputs_.row(static_cast<Eigen::Index>(i)));
@@ -130,11 +146,28 @@ Guard::Guard(const field::InputSchema& schema, const MatrixD& inputs, std::vecto
   std::sort(self_distance_.begin(), self_distance_.end());
 }
 
-void Guard::find_ranges() {
+void Guard::learn_inputs() {
+  std::vector<double> excess(static_cast<std::size_t>(inputs_.rows()), 0.0);
   for (Eigen::Index i = 0; i < inputs_.cols(); ++i) {
-    low_.push_back(inputs_.col(i).minCoeff());
-    high_.push_back(inputs_.col(i).maxCoeff());
+    std::vector<double> values(inputs_.col(i).begin(), inputs_.col(i).end());
+    std::ranges::sort(values);
+    low_.push_back(values.front());
+    high_.push_back(values.back());
+    // Without its case, an end of the range is the next value; ties leave it where it is.
+    const auto n = values.size();
+    if (n < 3) continue;
+    for (Eigen::Index k = 0; k < inputs_.rows(); ++k) {
+      const double value = inputs_(k, i);
+      const Range others{value == values[0] ? values[1] : values[0],
+                         value == values[n - 1] ? values[n - 2] : values[n - 1]};
+      auto& worst = excess[static_cast<std::size_t>(k)];
+      worst = std::max(worst, others.excess(value));
+    }
   }
+  const double rare = std::min(math::conformal_quantile(excess, 1 - edge_share), std::ranges::max(excess));
+  const bool enough = 1 / (static_cast<double>(excess.size()) + 1) < least_share;
+  edge_excess_ = enough ? std::min(rare, most_edge_excess) : 0;
+  line_ = OperatingLine(inputs_);
 }
 
 void Guard::hold(std::span<const double> inputs, std::span<double> held) const {
@@ -151,30 +184,53 @@ Assessment Guard::assess(std::span<const double> inputs) const {
   const Eigen::Map<const Eigen::RowVectorXd> point(inputs.data(), static_cast<Eigen::Index>(inputs.size()));
   if (!point.allFinite()) throw NumericalError("an input of the case is not a finite number");
   Assessment result;
-  double worst_excess = 0;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const Range range{low_[i], high_[i]};
-    const double excess = range.excess(inputs[i]);
-    if (excess > 0) result.out_of_range.push_back(range_text(schema_[i], inputs[i], range));
-    worst_excess = std::max(worst_excess, excess);
-  }
+  const auto by_range = judge_ranges(inputs, result.out_of_range);
+  const auto by_line = judge_line(inputs, result.unusual);
   const auto all = distances(inputs_, scales_of(inputs_), point);
   const auto nearest = nearest_first(all, n_nearest);
   for (const auto i : nearest) result.nearest.push_back({names_[i], loads_[i], all[i]});
   result.distance = joint_distance(all, nearest);
+  result.verdict = std::max({by_range, by_line, judge_distance(result)});
+  result.reason = reason_text(result, by_range, self_distance_.empty() ? 0 : self_distance_.back());
+  return result;
+}
 
+Verdict Guard::judge_ranges(std::span<const double> inputs, std::vector<std::string>& out_of_range) const {
+  double worst = 0;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Range range{low_[i], high_[i]};
+    const double excess = range.excess(inputs[i]);
+    if (excess > 0) out_of_range.push_back(range_text(schema_[i], inputs[i], range));
+    worst = std::max(worst, excess);
+  }
+  return worst > edge_excess_ + edge_margin ? Verdict::outside
+         : worst > edge_excess_             ? Verdict::edge
+                                            : Verdict::inside;
+}
+
+Verdict Guard::judge_line(std::span<const double> inputs, std::vector<std::string>& unusual) const {
+  const auto usual = line_.usual(inputs);
+  std::vector<std::pair<double, std::string>> found;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const double distance = usual[i].distance(inputs[i]);
+    if (distance > line_.limit())
+      found.emplace_back(-distance, unusual_text(schema_[i], inputs[i], usual[i]));
+  }
+  std::ranges::sort(found);
+  for (auto& [distance, text] : found) unusual.push_back(std::move(text));
+  if (found.empty()) return Verdict::inside;
+  return -found.front().first > line_.far_limit() ? Verdict::outside : Verdict::edge;
+}
+
+Verdict Guard::judge_distance(Assessment& result) const {
+  if (self_distance_.empty()) return Verdict::inside;
   const auto first_as_far = std::lower_bound(self_distance_.begin(), self_distance_.end(), result.distance);
   const auto n_as_far = static_cast<double>(self_distance_.end() - first_as_far);
-  const double loneliest = self_distance_.empty() ? 0 : self_distance_.back();
-  result.p_value = (n_as_far + 1) / (static_cast<double>(self_distance_.size()) + 1);
-  const bool far = !self_distance_.empty() && result.distance > outside_distance * loneliest;
-  if (worst_excess > edge_margin || far) {
-    result.verdict = Verdict::outside;
-  } else if (worst_excess > 0 || result.p_value < edge_p_value) {
-    result.verdict = Verdict::edge;
-  }
-  result.reason = reason_text(result, loneliest);
-  return result;
+  const double n = static_cast<double>(self_distance_.size());
+  result.p_value = (n_as_far + 1) / (n + 1);
+  if (result.distance > outside_distance * self_distance_.back()) return Verdict::outside;
+  const bool rare = result.p_value < least_share && n_as_far < std::max(1.0, edge_share * n);
+  return rare ? Verdict::edge : Verdict::inside;
 }
 
 void Guard::save(io::TensorFile& file, const std::string& prefix) const {
@@ -206,7 +262,7 @@ Guard Guard::load(const io::TensorFile& file, const std::string& prefix, const f
     throw InputError(
         {.what = "broken guard", .where = where, .expected = "finite inputs of at least one training case"});
   }
-  guard.find_ranges();
+  guard.learn_inputs();
   return guard;
 }
 

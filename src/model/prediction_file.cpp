@@ -1,5 +1,6 @@
 #include "elrom/model/prediction_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "elrom/base/atomic_file.hpp"
@@ -88,6 +89,20 @@ io::Hdf5Group write_grid(const Extent& extent, const io::Hdf5Group& file) {
                                                        .n_cells = extent.cells().size()});
 }
 
+/// "gas_velocity_x", "gas_velocity_y" and "gas_velocity_z" are shown as "gas_velocity" too.
+void show_vectors(const PredictionFrame& frame, const io::Hdf5Group& cell_data, const io::Hdf5Group& fields) {
+  for (const auto& info : frame.fields) {
+    if (!info.name.ends_with("_x")) continue;
+    const auto name = info.name.substr(0, info.name.size() - 2);
+    std::vector<io::Hdf5Dataset> components;
+    for (const char* axis : {"_x", "_y", "_z"}) {
+      if (std::ranges::find(frame.fields, name + axis, &field::FieldInfo::name) != frame.fields.end())
+        components.push_back(fields.dataset(name + axis));
+    }
+    if (components.size() == 3) io::show_cell_vectors(cell_data, components, name);
+  }
+}
+
 void write_vtk(const PredictionFrame& frame, const io::Hdf5Group& file, const io::Hdf5Group& elrom) {
   const auto cell_data = write_grid(frame.extent, file);
   const auto show = [&](const std::string& source, const std::string& suffix) {
@@ -97,6 +112,7 @@ void write_vtk(const PredictionFrame& frame, const io::Hdf5Group& file, const io
     }
   };
   show("fields", "");
+  show_vectors(frame, cell_data, elrom.group("fields"));
   if (frame.level) show("half_width", "_half_width");
 }
 

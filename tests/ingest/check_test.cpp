@@ -120,6 +120,16 @@ TEST(Check, UnitMistakesOfEveryKindAreTold) {
   EXPECT_THAT(field("solid_volume_fraction", 0.01f), found("unit", name, "solid_volume_fraction"));
 }
 
+TEST(Check, AnInputFarFromWhatTheOthersMakeUsualIsTold) {
+  const auto findings = check_with(
+      20, [](CfdCase& one) { one.record.inputs.values[one.schema.index_of("primary_air")] *= 1.35; });
+  const auto& name = shipped()[20].record.inputs.name;
+
+  EXPECT_THAT(findings, found("far_input", name, "primary_air"));
+  EXPECT_THAT(findings_on(findings, name),
+              Contains(Field(&Finding::message, HasSubstr(" kg/s is usual with these other inputs"))));
+}
+
 TEST(Check, AMistakeInEveryCaseIsSeenByPhysics) {
   auto cases = shipped();
   for (auto& one : cases) one.values.row(row_of(one, "pressure")) *= 1e3f;

@@ -82,8 +82,31 @@ TEST(Guard, AnUnusualCombinationOfInputsInRangeIsOutside) {
 
   EXPECT_EQ(result.verdict, Verdict::outside);
   EXPECT_THAT(result.out_of_range, ElementsAre());
-  EXPECT_THAT(result.reason, HasSubstr("combination is unusual"));
+  EXPECT_THAT(result.unusual, ElementsAre(HasSubstr("fuel 19 kg/s: 10"), HasSubstr("air 360 t/h: 68")));
+  EXPECT_THAT(result.reason, HasSubstr(" kg/s is usual with these other inputs (and 1 more such)"));
   EXPECT_DOUBLE_EQ(result.p_value, 1.0 / 41);
+}
+
+TEST(Guard, AnInputOffTheLineOfTheOthersIsEdgeAndFartherOffOutside) {
+  // Air is 200 load +- 2.3 (uniform in 4 either side), fuel tells the load to 0.012.
+  const auto guard = Cases().guard();
+
+  EXPECT_EQ(guard.assess(std::array{140.0, 14.0, 180e-6}).verdict, Verdict::inside);
+  const auto edge = guard.assess(std::array{140 + 9.5, 14.0, 180e-6});
+  EXPECT_EQ(edge.verdict, Verdict::edge) << edge.reason;
+  const auto outside = guard.assess(std::array{140 + 16.0, 14.0, 180e-6});
+  EXPECT_EQ(outside.verdict, Verdict::outside) << outside.reason;
+  EXPECT_THAT(outside.reason,
+              ::testing::MatchesRegex("fuel 14 kg/s: 15.[0-9]+ .- .*|air 561.6 t/h: 50. .- .*"));
+}
+
+TEST(Guard, AlongTheLineItIsInsideAsFarAsTheTrainingCasesGo) {
+  const Cases cases;
+  const auto guard = cases.guard();
+
+  for (const double load : {0.42, 0.6, 0.8, 0.98})
+    ASSERT_EQ(guard.assess(std::array{200 * load, 20 * load, 180e-6}).verdict, Verdict::inside) << load;
+  EXPECT_EQ(guard.assess(std::array{300.0, 30.0, 180e-6}).verdict, Verdict::outside);
 }
 
 TEST(Guard, AnInputThatNeverChangedMayNotChange) {

@@ -1,6 +1,6 @@
 #pragma once
 // Group /VTKHDF of an HDF5 file: an unstructured grid of hexahedra with one
-// value a cell, as ParaView 5.11 and later open it (VTKHDF 1.0).
+// value or vector a cell, as ParaView 5.11 and later open it (VTKHDF 1.0).
 //
 // Non-goals: other cells, points' values, time steps, reading. Thread rule: one thread at a time per file.
 
@@ -41,5 +41,8 @@ struct PackedVtkHexahedra {
 /// where it has one dimension, a view of it where it has several.
 void show_cell_data(const Hdf5Group& cell_data, const Hdf5Dataset& values, const std::string& target,
                     const std::string& name);
+/// One vector a cell, a view of its components, so that it costs no values: what draws streamlines wants it so.
+void show_cell_vectors(const Hdf5Group& cell_data, std::span<const Hdf5Dataset> components,
+                       const std::string& name);
 
 }  // namespace elrom::io

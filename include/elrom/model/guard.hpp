@@ -8,6 +8,7 @@
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/io/tensor_file.hpp"
 #include "elrom/math/matrix.hpp"
+#include "elrom/model/operating_line.hpp"
 
 namespace elrom::model {
 
@@ -24,13 +25,18 @@ struct Assessment {
   Verdict verdict = Verdict::inside;
   std::string reason;                     ///< one sentence, with the user's units
   std::vector<std::string> out_of_range;  ///< "primary_air 250 kg/s (trained 150 to 212)"
-  double distance = 0;                    ///< joint distance to the training cases
+  /// "primary_air 225 kg/s: 177 +- 11 kg/s is usual with these other inputs", the most unusual first
+  std::vector<std::string> unusual;
+  double distance = 0;  ///< joint distance to the training cases
   /// Share of training cases at least as far from the others (leave-one-out), (k + 1) / (n + 1)
   double p_value = 1;
   std::vector<Neighbour> nearest;  ///< three, nearest first
 };
 
-/// Thread rule: const use from any thread.
+/// Judges by three things, each held against what the training cases say of each other when one of them is
+/// left out, so that of cases like them at most about 5 % are flagged: how far an input lies outside the
+/// trained range, from what the other inputs make usual (OperatingLine), and how far the case as a whole lies
+/// from the training cases. Thread rule: const use from any thread.
 class Guard {
  public:
   Guard() = default;
@@ -48,7 +54,11 @@ class Guard {
                                   const field::InputSchema& schema);
 
  private:
-  void find_ranges();
+  void learn_inputs();
+  // Each sets what it is named after; the verdict is the worst of the three.
+  Verdict judge_ranges(std::span<const double> inputs, std::vector<std::string>& out_of_range) const;
+  Verdict judge_line(std::span<const double> inputs, std::vector<std::string>& unusual) const;
+  Verdict judge_distance(Assessment& result) const;
 
   field::InputSchema schema_;
   MatrixD inputs_;  //!< training inputs, SI, (n_cases, n_inputs)
@@ -56,6 +66,8 @@ class Guard {
   std::vector<double> loads_;
   std::vector<double> self_distance_;  //!< of every training case to the others, ascending, (n_cases)
   std::vector<double> low_, high_;     //!< trained range, (n_inputs)
+  double edge_excess_ = 0;             //!< trained widths outside the range that are nothing special
+  OperatingLine line_;
 };
 
 }  // namespace elrom::model
