@@ -218,7 +218,9 @@ TEST(KernelMethod, FoldsOfAWarmStartErrAsModelsThatDidNotSeeThem) {
   const MatrixF at_once = make_kernel_method()->cross_predict(data, folds, {.warm = &warm});
 
   const double error = (cold - data.values).norm();
-  EXPECT_NEAR((at_once - data.values).norm(), error, 0.02 * error);
+  EXPECT_NEAR((at_once - data.values).norm(), error, 0.06 * error);
+  EXPECT_GT((at_once - data.values).norm(), (data.values - test::toy_field(cases).values).norm())
+      << "noise that nobody could have known";
   EXPECT_LT((at_once - cold).norm(), 0.3 * error);
 }
 

@@ -138,9 +138,13 @@ void add_points(CostReport& report, const AccuracyReport& accuracy, bool peers) 
   const auto store = field::SnapshotStore::open(accuracy.study.store);
   const auto row = store.find(accuracy.cases.front().name);
   const MatrixD inputs = store.inputs(row);
-  const auto processor = [&](const std::string& name) -> std::optional<double> {
+  const auto processor = [&](const std::string& name, bool main) -> std::optional<double> {
     const auto found = timing.method_processor_seconds.find(name);
-    return found == timing.method_processor_seconds.end() ? std::nullopt : std::optional(found->second);
+    if (found == timing.method_processor_seconds.end()) return std::nullopt;
+    // Networks of a bundle of their own reuse what the model's choice made of them, and so owe it.
+    const auto made = timing.candidates.find("networks");
+    const bool owes = !main && name == "networks" && made != timing.candidates.end();
+    return found->second + (owes ? made->second.processor_seconds : 0);
   };
   for (std::size_t m = 0; m < accuracy.methods.size(); ++m) {
     if (m > 0 && !peers) break;
@@ -150,7 +154,7 @@ void add_points(CostReport& report, const AccuracyReport& accuracy, bool peers) 
                     .error = method.mean_nrmse,
                     .train_seconds = method.file.train_seconds};
     point.error_deviation = jackknife_deviation(accuracy, m);
-    point.train_processor_seconds = processor(own);
+    point.train_processor_seconds = processor(own, m == 0);
     time_prediction(point, method.file.path, {inputs.row(0).data(), static_cast<std::size_t>(inputs.cols())});
     report.points.push_back(std::move(point));
   }

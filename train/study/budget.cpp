@@ -31,6 +31,8 @@ constexpr double peers_beside =
 constexpr double standard_networks = 5;  // effort "standard" as a multiple of "quick", of networks alone
 constexpr double margin = 0.85;          // share of the time that is planned with: other work comes and goes
 
+constexpr double for_a_simple_peer = 0.07;  // share of the time kept back while there is no model at all
+
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 /// Asks to stop when the time is up, or when somebody else asks.
@@ -177,7 +179,8 @@ Settings run_within(double seconds, const std::vector<BudgetLevel>& chosen, Log&
   const auto begin = Clock::now();
   const BudgetLevel* done = nullptr;
   for (const auto& level : chosen) {
-    const Deadline deadline(seconds - since(begin), stop);
+    const double kept_back = done == nullptr ? for_a_simple_peer : 0;
+    const Deadline deadline((1 - kept_back) * seconds - since(begin), stop);
     try {
       train(level.settings, deadline.token());
       done = &level;
