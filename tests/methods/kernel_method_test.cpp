@@ -182,6 +182,60 @@ TEST(KernelMethod, IsTheSameAfterSaveAndLoadAndForAnyThreads) {
   EXPECT_EQ(predict(*one, cases, inputs), predict(*model::load_field_model(file, "m"), cases, inputs));
 }
 
+/// What a model of the first n cases knows.
+WarmStart known_of(const field::FieldData& data, std::size_t n) {
+  return {"digest of a bundle", make_kernel_method()->fit(data, math::all_rows(n), {})};
+}
+
+TEST(KernelMethod, AFitThatBeginsAtAnEarlierModelIsAsGoodAsOneFromNothing) {
+  const field::CaseSet cases = test::toy_cases(40);
+  const field::FieldData data = test::toy_field(cases, 0.3), truth = test::toy_field(cases);
+  const auto warm = known_of(data, 24);
+  const auto rows = math::all_rows(30);
+
+  const auto cold_model = make_kernel_method()->fit(data, rows, {});
+  const auto warm_model = make_kernel_method()->fit(data, rows, {.warm = &warm});
+
+  double cold_error = 0, warm_error = 0;
+  for (Eigen::Index i = 30; i < 40; ++i) {
+    const std::vector<double> inputs(cases.inputs.row(i).begin(), cases.inputs.row(i).end());
+    const std::span<const float> exact(truth.values.row(i).data(), cases.mesh.n_cells());
+    cold_error += math::squared_distance(predict(*cold_model, cases, inputs), exact);
+    warm_error += math::squared_distance(predict(*warm_model, cases, inputs), exact);
+  }
+  EXPECT_NE(warm_error, cold_error) << "it began somewhere else";
+  EXPECT_LT(std::sqrt(warm_error), 1.03 * std::sqrt(cold_error));
+}
+
+TEST(KernelMethod, FoldsOfAWarmStartErrAsModelsThatDidNotSeeThem) {
+  const field::CaseSet cases = test::toy_cases(30);
+  const field::FieldData data = test::toy_field(cases, 0.3);
+  const auto rows = math::all_rows(30);
+  const auto folds = load_grouped_folds(cases.loads, rows, 6);
+  const auto warm = known_of(data, 26);
+
+  const MatrixF cold = make_kernel_method()->cross_predict(data, folds, {});
+  const MatrixF at_once = make_kernel_method()->cross_predict(data, folds, {.warm = &warm});
+
+  const double error = (cold - data.values).norm();
+  EXPECT_NEAR((at_once - data.values).norm(), error, 0.06 * error);
+  EXPECT_GT((at_once - data.values).norm(), (data.values - test::toy_field(cases).values).norm())
+      << "noise that nobody could have known";
+  EXPECT_LT((at_once - cold).norm(), 0.3 * error);
+}
+
+TEST(KernelMethod, AnEarlierModelOfOtherFeaturesIsNoStart) {
+  const field::CaseSet cases = test::toy_cases(15), plain = test::toy_cases(15, false);
+  const field::FieldData data = test::toy_field(cases, 0.1);
+  const auto warm = known_of(test::toy_field(plain, 0.1), 15);
+  const std::vector<double> inputs{5, 6, 7, 8, 60, 2e-4, 1100, 0.55};
+
+  const auto one = make_kernel_method()->fit(data, math::all_rows(15), {.warm = &warm}),
+             other = make_kernel_method()->fit(data, math::all_rows(15), {});
+
+  EXPECT_EQ(predict(*one, cases, inputs), predict(*other, cases, inputs));
+}
+
 TEST(KernelMethod, HardCasesStayFinite) {
   field::CaseSet cases = test::toy_cases(6);
   field::FieldData data = test::toy_field(cases);

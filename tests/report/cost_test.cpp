@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/atomic_file.hpp"
@@ -39,8 +40,75 @@ TEST(Cost, EqualPointsBothStayOnTheFront) {
   EXPECT_TRUE(points[0].front && points[1].front);
 }
 
+CostReport report_with_networks(int fields_used) {
+  CostReport report{
+      .points = {{.name = "study", .error = 0.629, .train_seconds = 250, .predict_ms = 12},
+                 {.name = "study: networks", .error = 0.634, .train_seconds = 45, .predict_ms = 30}},
+      .reference = {.name = "EL3D", .hours = 23, .cores = 48, .error = 0.602, .n_cases = 64},
+      .parts = {{.study = "study",
+                 .method = "kernel",
+                 .processor_seconds = 40,
+                 .fields = 9,
+                 .fields_used = 9,
+                 .error = std::nan("")},
+                {.study = "study",
+                 .method = "networks",
+                 .processor_seconds = 210,
+                 .fields = 9,
+                 .fields_used = fields_used,
+                 .error = 0.634}}};
+  report.points.front().train_processor_seconds = 250;
+  mark_front(report.points);
+  return report;
+}
+
+TEST(Cost, WordsSayWhatBuysNothing) {
+  EXPECT_THAT(
+      in_words(report_with_networks(0)),
+      ::testing::Contains("networks cost 3 min 30 s of processor time here and buy nothing (0.634 against "
+                          "0.629): leave them out (peers.networks = false)."));
+  EXPECT_THAT(in_words(report_with_networks(2)),
+              ::testing::Contains(::testing::HasSubstr("answer, alone or blended, for 2 of 9 fields")));
+}
+
+TEST(Cost, WordsSetTheSolverBesideTheModel) {
+  const auto words = in_words(report_with_networks(0));
+
+  // 23 h * 48 cores = 3,974,400 s; 12 ms and 250 s beside them
+  EXPECT_THAT(words,
+              ::testing::Contains("EL3D takes 23 h on 48 cores for one case; a prediction takes 12.0 ms on "
+                                  "one, 3e+08 times less, and the training 4 min 10 s, 0.0063 % of one case "
+                                  "(its 64 training cases took 7.07e+04 core hours)."));
+  auto unknown = report_with_networks(0);
+  unknown.reference.hours = 0;
+  EXPECT_EQ(in_words(unknown).size(), words.size() - 1);
+}
+
+TEST(Cost, TheFrontIsByProcessorTimeWhereItWasKept) {
+  std::vector<CostPoint> points{{.name = "a", .error = 0.6, .train_seconds = 100, .predict_ms = 1},
+                                {.name = "b", .error = 0.6, .train_seconds = 50, .predict_ms = 1}};
+  points[0].train_processor_seconds = 10;
+  points[1].train_processor_seconds = 20;
+
+  mark_front(points);
+
+  EXPECT_TRUE(points[0].front);
+  EXPECT_FALSE(points[1].front);
+}
+
+TEST(Cost, PartsAndReferenceReadBackTheSame) {
+  base::write_text(file("parts.json"), to_json(report_with_networks(0)));
+
+  const auto read = read_cost_report(file("parts.json"));
+
+  EXPECT_EQ(read.points.front().train_processor_seconds, 250);
+  EXPECT_EQ(in_words(read), in_words(report_with_networks(0)));
+}
+
 TEST(Cost, JsonReadsBackTheSame) {
-  const CostReport written{{{.name = "a: \"b\"", .error = 0.25, .predict_ms = 3.5, .front = true}}};
+  const CostReport written{.points = {{.name = "a: \"b\"", .error = 0.25, .predict_ms = 3.5, .front = true}},
+                           .reference = {},
+                           .parts = {}};
   base::write_text(file("cost.json"), to_json(written));
 
   const auto read = read_cost_report(file("cost.json"));

@@ -48,6 +48,14 @@ struct SymmetryPart {
   [[nodiscard]] bool empty() const { return modes.rows() == 0; }
 };
 
+/// What is learned of one class of the field before its modes are made.
+struct Learned {
+  model::SmootherKernel kernel;
+  MatrixF shrunk;     // the cases, every wavelength and cell as far as it is trusted, (n_cases, n_cells)
+  MatrixF residuals;  // (n_cases, n_cells), leave-one-out
+  bool predicts = false;
+};
+
 /// The smoother of one covariance on the training cases.
 struct Smoother {
   MatrixXd covariance, precision, inverse_factor;  // K, (K + noise I)^-1, L^-1
@@ -69,6 +77,80 @@ struct Smoother {
   }
 };
 
+struct Features {
+  DerivedInputs derived;
+  math::Standardiser scaler;  // imbalances keep their zero: mean 0, root mean square as scale
+  MatrixD z;
+
+  [[nodiscard]] std::vector<Index> of_class(std::size_t c) const {
+    std::vector<Index> found;
+    for (std::size_t j = 0; j < derived.class_of.size(); ++j) {
+      if (derived.class_of[j] == c) found.push_back(static_cast<Index>(j));
+    }
+    return found;
+  }
+  [[nodiscard]] bool same_as(const model::FeatureMap& other) const {
+    return std::ranges::equal(derived.map.features(), other.features(), {}, &model::Feature::name,
+                              &model::Feature::name);
+  }
+};
+
+Features features_of(const field::CaseSet& cases, std::span<const std::size_t> rows,
+                     const std::vector<SymmetryClass>& classes) {
+  Features features{derive_inputs(cases, rows, classes), {}, {}};
+  MatrixD raw(static_cast<Index>(rows.size()), static_cast<Index>(features.derived.map.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto row = cases.inputs.row(static_cast<Index>(rows[i]));
+    auto out = raw.row(static_cast<Index>(i));
+    features.derived.map.evaluate({row.data(), static_cast<std::size_t>(row.size())},
+                                  {out.data(), static_cast<std::size_t>(out.size())});
+  }
+  math::ColumnMoments moments = math::column_moments(raw);
+  for (Index j = 0; j < raw.cols(); ++j) {
+    if (features.derived.class_of[static_cast<std::size_t>(j)] == 0) continue;
+    moments.mean[j] = 0;
+    moments.deviation[j] = std::sqrt(raw.col(j).squaredNorm() / static_cast<double>(raw.rows()));
+  }
+  features.scaler = math::Standardiser(moments.mean, moments.deviation);
+  features.z = features.scaler.apply(raw);
+  return features;
+}
+
+/// Every class of a field, with what all of them are learned from.
+struct FieldParts {
+  std::vector<SymmetryClass> classes;
+  MatrixF symmetric;  // departures of the symmetric class from its mean, (n_cases, n_cells)
+  VectorXd mean;      // (n_cells)
+  Features features;
+  const model::SmootherCoefficients* earlier = nullptr;  // of the same features
+
+  FieldParts(const field::FieldData& data, std::span<const std::size_t> cases, const FitContext& context)
+      : classes(symmetry_classes(data.cases->mirrors.size())),
+        symmetric(project(data, cases, classes.front(), context.n_threads)),
+        mean(math::row_mean(symmetric, math::all_rows(cases.size()), context.n_threads)),
+        features(features_of(*data.cases, cases, classes)) {
+    for (Index i = 0; i < symmetric.rows(); ++i) symmetric.row(i) -= mean.transpose().cast<float>();
+    const auto* smoother = context.warm == nullptr ? nullptr : context.warm->smoother();
+    if (smoother != nullptr && features.same_as(smoother->features())) earlier = smoother;
+  }
+
+  [[nodiscard]] bool nothing_to_learn() const {
+    return symmetric.rows() < 3 || features.of_class(0).empty() || !(symmetric.squaredNorm() > 0);
+  }
+  /// The earlier kernel of a class; nullptr: none, or it knew other features.
+  [[nodiscard]] const model::SmootherKernel* earlier_kernel(std::size_t c) const {
+    if (earlier == nullptr) return nullptr;
+    const auto own = features.of_class(c);
+    for (const auto& group : earlier->groups()) {
+      if (group.kernel.antisymmetric != (c > 0)) continue;
+      const VectorXd& used = c > 0 ? group.kernel.imbalance : group.kernel.inverse_lengths;
+      if ((used.array() > 0).count() == static_cast<Index>(own.size()) && (used(own).array() > 0).all())
+        return &group.kernel;
+    }
+    return nullptr;
+  }
+};
+
 class KernelMethod final : public Method {
  public:
   explicit KernelMethod(KernelOptions options) : options_(options) {}
@@ -81,26 +163,40 @@ class KernelMethod final : public Method {
                                                        const FitContext& context) const override;
   [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
                                       const FitContext& context) const override {
+    if (context.warm != nullptr) {
+      FieldParts field(data, rows_without(folds, folds.size()), context);
+      if (field.earlier_kernel(0) != nullptr && !field.nothing_to_learn())
+        return cross_predict_at_once(std::move(field), data, folds, context);
+    }
     return cross_predict_by_fitting(*this, data, folds, context, true);
   }
 
  private:
-  [[nodiscard]] SymmetryPart fit_symmetric(MatrixF centred, const MatrixD& z, const std::vector<Index>& used,
-                                           const field::FieldData& data, int n_threads) const;
-  [[nodiscard]] SymmetryPart fit_antisymmetric(MatrixF values, const MatrixD& z,
-                                               const std::vector<Index>& imbalances,
-                                               const model::SmootherKernel& symmetric, double may_drop,
-                                               const field::FieldData& data, int n_threads) const;
-  static void make_modes(SymmetryPart& part, const Smoother& smoother, const MatrixF& shrunk,
-                         std::size_t most_modes, double may_drop);
+  /// Calls take(class, learned) for one class after the other, the symmetric one first.
+  template <class Take>
+  void learn(FieldParts& field, const field::FieldData& data, std::span<const std::size_t> cases,
+             const FitContext& context, const Take& take) const;
+  [[nodiscard]] Learned learn_symmetric(MatrixF centred, const FieldParts& field,
+                                        const field::FieldData& data, int n_threads) const;
+  [[nodiscard]] Learned learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
+                                            const model::SmootherKernel& symmetric,
+                                            const field::FieldData& data, int n_threads) const;
+  [[nodiscard]] static SymmetryPart make_part(Learned learned, const MatrixD& z, std::size_t most_modes,
+                                              double may_drop);
+  [[nodiscard]] MatrixF cross_predict_at_once(FieldParts field, const field::FieldData& data,
+                                              const Folds& folds, const FitContext& context) const;
 
   KernelOptions options_;
 };
 
 /// Basis of what the smoother can say: the principal directions of the fitted (not the noisy) cases.
 /// @param may_drop energy, summed over cases and cells, that the left-out directions may hold
-void KernelMethod::make_modes(SymmetryPart& part, const Smoother& smoother, const MatrixF& shrunk,
-                              std::size_t most_modes, double may_drop) {
+SymmetryPart KernelMethod::make_part(Learned learned, const MatrixD& z, std::size_t most_modes,
+                                     double may_drop) {
+  SymmetryPart part;
+  part.group.kernel = std::move(learned.kernel);
+  const Smoother smoother(part.group.kernel, z);
+  const MatrixF& shrunk = learned.shrunk;
   const MatrixXd gram = cross_gram(shrunk, shrunk);
   const MatrixXd fitted = smoother.covariance * smoother.precision;  // H
   const MatrixD fitted_gram = fitted * gram * fitted.transpose();
@@ -125,25 +221,32 @@ void KernelMethod::make_modes(SymmetryPart& part, const Smoother& smoother, cons
   part.group.inverse_factor = smoother.inverse_factor.cast<float>();
   part.left_out_variance =
       std::max(0.0, smoother.precision.diagonal().cwiseInverse().mean() - part.group.kernel.noise);
+  return part;
 }
 
-SymmetryPart KernelMethod::fit_symmetric(MatrixF centred, const MatrixD& z, const std::vector<Index>& used,
-                                         const field::FieldData& data, int n_threads) const {
+Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, const field::FieldData& data,
+                                      int n_threads) const {
   const auto n = static_cast<double>(centred.rows());
-  MatrixXd gram = cross_gram(centred, centred);
-  SymmetryPart part;
+  const auto used = field.features.of_class(0);
+  const MatrixD& z = field.features.z;
+  const auto* near = field.earlier_kernel(0);
+  const int passes = std::max(options_.passes, 1);
+  MatrixXd gram;
+  if (near == nullptr || passes == 1) gram = cross_gram(centred, centred);
+  Learned learned{.kernel = {}, .shrunk = {}, .residuals = {}, .predicts = true};
   Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
   // Deviations of a left-out case are taken from the mean of the others: y_i n / (n - 1) on centred cases.
   const MatrixF truth = centred * static_cast<float>(n / (n - 1));
-  for (int pass = 0; pass < std::max(options_.passes, 1); ++pass) {
-    part.group.kernel = fit_symmetric_kernel(z, used, gram);
-    MatrixXd left_out = Smoother(part.group.kernel, z).leave_one_out();
+  for (int pass = 0; pass < passes; ++pass) {
+    // An earlier kernel is near enough for the weights of the errors that the last search goes by.
+    learned.kernel = near != nullptr && pass + 1 < passes ? *near : fit_symmetric_kernel(z, used, gram, near);
+    MatrixXd left_out = Smoother(learned.kernel, z).leave_one_out();
     left_out.array() += 1 / (n - 1);
     left_out.diagonal().array() -= 1 / (n - 1);
     MatrixF predicted = left_out.cast<float>() * centred;
     shrinkage.learn(predicted, truth, {}, n_threads);
-    part.residuals = truth - predicted;
-    if (pass + 1 < options_.passes) {
+    learned.residuals = truth - predicted;
+    if (pass + 1 < passes) {
       MatrixF weighted = centred;
       shrinkage.apply(weighted, n_threads);
       gram = cross_gram(centred, weighted);
@@ -151,65 +254,44 @@ SymmetryPart KernelMethod::fit_symmetric(MatrixF centred, const MatrixD& z, cons
     }
   }
   shrinkage.apply(centred, n_threads);
-  make_modes(part, Smoother(part.group.kernel, z), centred, options_.most_modes,
-             options_.dropped * math::sum_of_squares(part.residuals));
-  return part;
+  learned.shrunk = std::move(centred);
+  return learned;
 }
 
-SymmetryPart KernelMethod::fit_antisymmetric(MatrixF values, const MatrixD& z,
-                                             const std::vector<Index>& imbalances,
-                                             const model::SmootherKernel& symmetric, double may_drop,
-                                             const field::FieldData& data, int n_threads) const {
-  SymmetryPart part;
-  const MatrixXd gram = cross_gram(values, values);
-  if (imbalances.empty() || !(gram.trace() > 0)) return part.residuals = std::move(values), part;
-  part.group.kernel = fit_antisymmetric_kernel(z, symmetric, imbalances, gram);
-  const Smoother smoother(part.group.kernel, z);
-  if (leave_one_out_error(smoother.covariance, part.group.kernel.noise, gram) >= gram.trace()) {
-    return part.residuals = std::move(values), part;  // better to predict no asymmetry at all
-  }
+Learned KernelMethod::learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
+                                          const model::SmootherKernel& symmetric,
+                                          const field::FieldData& data, int n_threads) const {
+  Learned learned;
+  const auto imbalances = field.features.of_class(c);
+  const MatrixD& z = field.features.z;
+  const MatrixXd gram =
+      options_.antisymmetric && !imbalances.empty() ? cross_gram(values, values) : MatrixXd();
+  if (gram.size() == 0 || !(gram.trace() > 0)) return learned.residuals = std::move(values), learned;
+  learned.kernel = fit_antisymmetric_kernel(z, symmetric, imbalances, gram, field.earlier_kernel(c));
+  const Smoother smoother(learned.kernel, z);
+  if (leave_one_out_error(smoother.covariance, learned.kernel.noise, gram) >= gram.trace())
+    return learned.residuals = std::move(values), learned;  // better to predict no asymmetry at all
   Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
   MatrixF predicted = smoother.leave_one_out().cast<float>() * values;
   shrinkage.learn(predicted, values, {.spectral = false, .prior = 0}, n_threads);
-  part.residuals = values - predicted;
+  learned.residuals = values - predicted;
   shrinkage.apply(values, n_threads);
-  make_modes(part, smoother, values, std::max<std::size_t>(options_.most_modes / 4, 1), may_drop);
-  return part;
+  learned.shrunk = std::move(values);
+  learned.predicts = true;
+  return learned;
 }
 
-struct Features {
-  DerivedInputs derived;
-  math::Standardiser scaler;  // imbalances keep their zero: mean 0, root mean square as scale
-  MatrixD z;
-
-  [[nodiscard]] std::vector<Index> of_class(std::size_t c) const {
-    std::vector<Index> found;
-    for (std::size_t j = 0; j < derived.class_of.size(); ++j) {
-      if (derived.class_of[j] == c) found.push_back(static_cast<Index>(j));
-    }
-    return found;
+template <class Take>
+void KernelMethod::learn(FieldParts& field, const field::FieldData& data, std::span<const std::size_t> cases,
+                         const FitContext& context, const Take& take) const {
+  auto symmetric = learn_symmetric(std::move(field.symmetric), field, data, context.n_threads);
+  const auto kernel = symmetric.kernel;
+  take(std::size_t{0}, std::move(symmetric));
+  for (std::size_t c = 1; c < field.classes.size(); ++c) {
+    if (context.stop.stop_requested()) throw Interrupted("kernel: stopped");
+    take(c, learn_antisymmetric(project(data, cases, field.classes[c], context.n_threads), c, field, kernel,
+                                data, context.n_threads));
   }
-};
-
-Features features_of(const field::CaseSet& cases, std::span<const std::size_t> rows,
-                     const std::vector<SymmetryClass>& classes) {
-  Features features{derive_inputs(cases, rows, classes), {}, {}};
-  MatrixD raw(static_cast<Index>(rows.size()), static_cast<Index>(features.derived.map.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto row = cases.inputs.row(static_cast<Index>(rows[i]));
-    auto out = raw.row(static_cast<Index>(i));
-    features.derived.map.evaluate({row.data(), static_cast<std::size_t>(row.size())},
-                                  {out.data(), static_cast<std::size_t>(out.size())});
-  }
-  math::ColumnMoments moments = math::column_moments(raw);
-  for (Index j = 0; j < raw.cols(); ++j) {
-    if (features.derived.class_of[static_cast<std::size_t>(j)] == 0) continue;
-    moments.mean[j] = 0;
-    moments.deviation[j] = std::sqrt(raw.col(j).squaredNorm() / static_cast<double>(raw.rows()));
-  }
-  features.scaler = math::Standardiser(moments.mean, moments.deviation);
-  features.z = features.scaler.apply(raw);
-  return features;
 }
 
 /// Per cell: root of the mean squared residual, less what the coefficients' own variance will add again.
@@ -253,36 +335,27 @@ MatrixF stacked(const std::vector<SymmetryPart>& parts, Index n_cells) {
 std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& data,
                                                      std::span<const std::size_t> cases,
                                                      const FitContext& context) const {
-  const int threads = context.n_threads;
-  const std::vector<SymmetryClass> classes = symmetry_classes(data.cases->mirrors.size());
-  MatrixF symmetric = project(data, cases, classes.front(), threads);
-  const VectorXd mean = math::row_mean(symmetric, math::all_rows(cases.size()), threads);
-  for (Index i = 0; i < symmetric.rows(); ++i) symmetric.row(i) -= mean.transpose().cast<float>();
-  const Features features = features_of(*data.cases, cases, classes);
-  const std::vector<Index> used = features.of_class(0);
-  if (cases.size() < 3 || used.empty() || !(symmetric.squaredNorm() > 0)) {
-    return mean_model(data, mean, math::column_moments(data.values, cases).deviation);
-  }
+  FieldParts field(data, cases, context);
+  if (field.nothing_to_learn())
+    return mean_model(data, field.mean, math::column_moments(data.values, cases).deviation);
 
-  std::vector<SymmetryPart> parts{fit_symmetric(std::move(symmetric), features.z, used, data, threads)};
-  MatrixF residuals = std::move(parts.front().residuals);
-  const double may_drop = options_.dropped * math::sum_of_squares(residuals);
-  for (std::size_t c = 1; c < classes.size(); ++c) {
-    if (context.stop.stop_requested()) throw Interrupted("kernel: stopped");
-    MatrixF values = project(data, cases, classes[c], threads);
-    if (!options_.antisymmetric) {
-      residuals += values;
-      continue;
-    }
-    SymmetryPart part = fit_antisymmetric(std::move(values), features.z, features.of_class(c),
-                                          parts.front().group.kernel, may_drop, data, threads);
-    residuals += part.residuals;
-    part.residuals.resize(0, 0);
+  std::vector<SymmetryPart> parts;
+  MatrixF residuals;
+  double may_drop = 0;
+  learn(field, data, cases, context, [&](std::size_t c, Learned learned) {
+    if (c == 0)
+      residuals = std::move(learned.residuals);
+    else
+      residuals += learned.residuals;
+    if (c == 0) may_drop = options_.dropped * math::sum_of_squares(residuals);
+    if (!learned.predicts) return;
+    const auto most = c == 0 ? options_.most_modes : std::max<std::size_t>(options_.most_modes / 4, 1);
+    auto part = make_part(std::move(learned), field.features.z, most, may_drop);
     part.i_class = c;
-    if (!part.empty()) parts.push_back(std::move(part));
-  }
+    if (c == 0 || !part.empty()) parts.push_back(std::move(part));
+  });
   const VectorXd residual = residual_deviation(residuals, parts);
-  if (parts.front().empty()) return mean_model(data, mean, residual);
+  if (parts.front().empty()) return mean_model(data, field.mean, residual);
 
   std::vector<model::SmootherCoefficients::Group> groups;
   const MatrixF modes = stacked(parts, data.values.cols());
@@ -292,14 +365,63 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
                          static_cast<std::int32_t>(part.i_class));
   }
   std::vector<std::vector<int>> signs;
-  for (const SymmetryClass& one : classes) signs.push_back(one.signs);
+  for (const SymmetryClass& one : field.classes) signs.push_back(one.signs);
   const field::Mesh& mesh = data.cases->mesh;
   model::SymmetryFold fold(data.cases->mirrors, data.info.parity, signs, mesh.n_planes, mesh.n_columns);
   for (SymmetryPart& part : parts) groups.push_back(std::move(part.group));
-  auto coefficients = std::make_shared<model::SmootherCoefficients>(features.derived.map, features.scaler,
-                                                                    features.z, std::move(groups));
-  return model::make_pod_model("kernel", mean, modes, residual, mesh.n_columns, std::move(coefficients),
+  auto coefficients = std::make_shared<model::SmootherCoefficients>(
+      field.features.derived.map, field.features.scaler, field.features.z, std::move(groups));
+  return model::make_pod_model("kernel", field.mean, modes, residual, mesh.n_columns, std::move(coefficients),
                                std::move(fold), std::move(class_of_mode));
+}
+
+/// Weights of the other folds' cases in the prediction of each case, 0 for those of its own fold: (n_cases,
+/// n_cases). @param about_mean the smoother works on departures from the mean of those cases
+MatrixXd weights_without_own_fold(const model::SmootherKernel& kernel, const MatrixD& z,
+                                  const std::vector<std::vector<Index>>& folds, bool about_mean) {
+  const MatrixXd covariance = kernel.matrix(z, z);
+  MatrixXd weights = MatrixXd::Zero(z.rows(), z.rows());
+  for (const auto& own : folds) {
+    std::vector<Index> others;
+    for (Index i = 0; i < z.rows(); ++i)
+      if (!std::ranges::binary_search(own, i)) others.push_back(i);
+    MatrixXd k = covariance(others, others);
+    k.diagonal().array() += kernel.noise;
+    const math::Cholesky factor(k);
+    if (!factor.succeeded()) throw NumericalError("kernel smoother: the covariance is not positive definite");
+    MatrixXd found = factor.solve(covariance(others, own)).transpose();
+    if (about_mean) found.colwise() -= found.rowwise().mean().eval();
+    weights(own, others) = found;
+  }
+  return weights;
+}
+
+/// With an earlier kernel: lengths, noise and trust are learned once, from all cases, and every fold's
+/// smoother follows from them in closed form. What those few numbers know of a fold is far below its scatter.
+MatrixF KernelMethod::cross_predict_at_once(FieldParts field, const field::FieldData& data,
+                                            const Folds& folds, const FitContext& context) const {
+  const auto cases = rows_without(folds, folds.size());
+  std::vector<std::vector<Index>> places;  // of each fold's rows in `cases`
+  for (const auto& fold : folds) {
+    auto& own = places.emplace_back();
+    for (const auto row : fold) own.push_back(std::ranges::lower_bound(cases, row) - cases.begin());
+  }
+  const auto n = static_cast<Index>(cases.size());
+  MatrixF found(n, field.symmetric.cols());
+  for (const auto& own : places) {  // the mean of the others; that of all is 0 here
+    const Eigen::RowVectorXf others = field.symmetric(own, Eigen::all).colwise().sum() /
+                                      -static_cast<float>(n - static_cast<Index>(own.size()));
+    for (const Index i : own) found.row(i) = field.mean.transpose().cast<float>() + others;
+  }
+  learn(field, data, cases, context, [&](std::size_t c, const Learned& learned) {
+    if (learned.predicts)
+      found += weights_without_own_fold(learned.kernel, field.features.z, places, c == 0).cast<float>() *
+               learned.shrunk;
+  });
+  MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());
+  for (Index i = 0; i < n; ++i)
+    predictions.row(static_cast<Index>(cases[static_cast<std::size_t>(i)])) = found.row(i);
+  return predictions;
 }
 
 }  // namespace

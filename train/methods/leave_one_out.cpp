@@ -107,6 +107,29 @@ VectorXd logs(Index n, double repeated, std::initializer_list<double> rest) {
 
 constexpr math::MinimiseOptions search{
     .max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6, .value_tolerance = 1e-8};
+/// From a kernel of nearly the same cases: what more steps would gain is far below the scatter of the cases.
+constexpr math::MinimiseOptions search_nearby{
+    .max_iterations = 15, .memory = 10, .gradient_tolerance = 1e-5, .value_tolerance = 1e-6};
+
+VectorXd symmetric_start(const model::SmootherKernel& near, const std::vector<Index>& used) {
+  VectorXd theta(static_cast<Index>(used.size()) + 2);
+  theta << -near.inverse_lengths(used).array().log(), std::log(near.linear), std::log(near.noise);
+  return theta;
+}
+
+VectorXd antisymmetric_start(const model::SmootherKernel& near, const model::SmootherKernel& symmetric,
+                             const std::vector<Index>& imbalances) {
+  double factor = 0, n = 0;
+  for (Index j = 0; j < near.inverse_lengths.size(); ++j) {
+    if (!(near.inverse_lengths[j] > 0 && symmetric.inverse_lengths[j] > 0)) continue;
+    factor += std::log(symmetric.inverse_lengths[j] / near.inverse_lengths[j]);
+    ++n;
+  }
+  VectorXd theta(static_cast<Index>(imbalances.size()) + 3);
+  theta << 2 * near.imbalance(imbalances).array().log(), std::log(near.linear), factor / std::max(n, 1.0),
+      std::log(near.noise);
+  return theta;
+}
 
 }  // namespace
 
@@ -128,14 +151,16 @@ double leave_one_out_error(const MatrixXd& covariance, double noise, const Matri
 }
 
 model::SmootherKernel fit_symmetric_kernel(const MatrixD& z, const std::vector<Index>& used,
-                                           const MatrixXd& gram) {
+                                           const MatrixXd& gram, const model::SmootherKernel* near) {
   const MatrixD x = columns(z, used);
   const auto p = x.cols();
   const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
     return symmetric_objective(x, gram, theta, gradient);
   };
-  const math::Minimum best = math::minimise(normalised(objective, gram.trace()), logs(p, 4, {0.3, 0.3}),
-                                            logs(p, 0.5, {1e-3, 1e-4}), logs(p, 200, {30, 100}), search);
+  const math::Minimum best = math::minimise(
+      normalised(objective, gram.trace()),
+      near == nullptr ? logs(p, 4, {0.3, 0.3}) : symmetric_start(*near, used), logs(p, 0.5, {1e-3, 1e-4}),
+      logs(p, 200, {30, 100}), near == nullptr ? search : search_nearby);
   model::SmootherKernel kernel{
       .linear = std::exp(best.x[p]), .constant = mean_variance, .noise = std::exp(best.x[p + 1])};
   kernel.inverse_lengths = kernel.imbalance = VectorXd::Zero(z.cols());
@@ -145,15 +170,17 @@ model::SmootherKernel fit_symmetric_kernel(const MatrixD& z, const std::vector<I
 }
 
 model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z, const model::SmootherKernel& symmetric,
-                                               const std::vector<Index>& imbalances, const MatrixXd& gram) {
+                                               const std::vector<Index>& imbalances, const MatrixXd& gram,
+                                               const model::SmootherKernel* near) {
   const MatrixD a = z * symmetric.inverse_lengths.asDiagonal(), o = columns(z, imbalances);
   const auto p = o.cols();
   const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
     return antisymmetric_objective(a, o, gram, theta, gradient);
   };
-  const math::Minimum best =
-      math::minimise(normalised(objective, gram.trace()), logs(p, 0.1, {1, 1, 1}),
-                     logs(p, 1e-5, {1e-3, 0.2, 0.1}), logs(p, 10, {10, 30, 1e4}), search);
+  const math::Minimum best = math::minimise(
+      normalised(objective, gram.trace()),
+      near == nullptr ? logs(p, 0.1, {1, 1, 1}) : antisymmetric_start(*near, symmetric, imbalances),
+      logs(p, 1e-5, {1e-3, 0.2, 0.1}), logs(p, 10, {10, 30, 1e4}), near == nullptr ? search : search_nearby);
   model::SmootherKernel kernel{
       .antisymmetric = true, .linear = std::exp(best.x[p]), .noise = std::exp(best.x[p + 2])};
   kernel.inverse_lengths = symmetric.inverse_lengths * std::exp(-best.x[p + 1]);

@@ -17,15 +17,18 @@ namespace elrom::methods {
                                          const Eigen::MatrixXd& gram, Eigen::MatrixXd* slope = nullptr);
 
 /// @param z standardised features, (n_cases, n_features) @param used features of the symmetric part
+/// @param near a kernel of the same features to search from, in a few steps; nullptr: from the usual start
 [[nodiscard]] model::SmootherKernel fit_symmetric_kernel(const MatrixD& z,
                                                          const std::vector<Eigen::Index>& used,
-                                                         const Eigen::MatrixXd& gram);
+                                                         const Eigen::MatrixXd& gram,
+                                                         const model::SmootherKernel* near = nullptr);
 
 /// @param symmetric the field's symmetric kernel: its lengths are kept, up to one common factor
-/// @param imbalances features of the antisymmetric part
+/// @param imbalances features of the antisymmetric part @param near as above
 [[nodiscard]] model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z,
                                                              const model::SmootherKernel& symmetric,
                                                              const std::vector<Eigen::Index>& imbalances,
-                                                             const Eigen::MatrixXd& gram);
+                                                             const Eigen::MatrixXd& gram,
+                                                             const model::SmootherKernel* near = nullptr);
 
 }  // namespace elrom::methods

@@ -4,7 +4,10 @@
 
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
+#include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/base/units.hpp"
+#include "elrom/study/budget.hpp"
 
 namespace elrom::programs {
 namespace {
@@ -21,24 +24,54 @@ void print_outcomes(const std::vector<study::FieldOutcome>& outcomes) {
 }
 
 int train(const StudyArguments& arguments, bool with_peers, const study::Settings& settings,
-          const study::Toolbox& tools, Log& log) {
+          const study::Toolbox& tools, Log& log, const std::stop_token& stop = base::interrupt_token()) {
   const auto begin = std::chrono::steady_clock::now();
-  study::Study study(arguments.folder, settings, tools, log, base::interrupt_token());
+  study::Study study(arguments.folder, settings, tools, log, stop);
   print_outcomes(with_peers ? study.run() : study.fit());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   fmt::print("{} in {}\n", (arguments.folder / "model.elrom").string(), base::duration(seconds));
   return 0;
 }
 
+int train_within(double seconds, const StudyArguments& arguments, bool with_peers,
+                 const study::Settings& settings, const study::Toolbox& tools, Log& log) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto model = study::cost_model(arguments.folder, settings, log);
+  const auto levels = study::budget_levels(settings, model);
+  const auto chosen = study::levels_within(levels, seconds);
+  for (const auto& level : chosen)
+    fmt::print("planned: {} (about {})\n", level.name, base::duration(level.seconds));
+  int status = 0;
+  const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  (void)study::run_within(seconds - taken, chosen, log, base::interrupt_token(),
+                          [&](const study::Settings& own, const std::stop_token& stop) {
+                            status = train(arguments, with_peers, own, tools, log, stop);
+                          });
+  for (const auto& sentence : study::left_out(levels, chosen, model)) fmt::print("{}\n", sentence);
+  fmt::print("{} of {}; the settings used are in {}\n",
+             base::duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()),
+             base::duration(seconds), (arguments.folder / "resolved.toml").string());
+  return status;
+}
+
 void add_training(CLI::App& app, Work& run, const std::string& name, const std::string& what,
                   bool with_peers) {
   auto* command = app.add_subcommand(name, what);
   auto arguments = std::make_shared<StudyArguments>();
+  auto budget = std::make_shared<std::string>();
   arguments->add_to(*command);
-  command->callback([&run, arguments, with_peers] {
-    run = [arguments, with_peers] {
+  command->add_option(
+      "--budget", *budget,
+      "time to spend at most, \"10min\": what buys most is done first, the rest is left out and named");
+  command->callback([&run, arguments, budget, with_peers] {
+    run = [arguments, budget, with_peers] {
+      const auto seconds = budget->empty() ? 0.0 : base::quantity(*budget, "s");
+      if (!budget->empty() && !(seconds > 0))
+        throw UsageError({.what = "no time to train in", .where = "--budget", .found = *budget});
       return in_study(*arguments,
                       [&](const study::Settings& settings, const study::Toolbox& tools, Log& log) {
+                        if (seconds > 0)
+                          return train_within(seconds, *arguments, with_peers, settings, tools, log);
                         return train(*arguments, with_peers, settings, tools, log);
                       });
     };

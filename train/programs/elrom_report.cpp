@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<std::string> studies, against, fields, models;
   std::string store, json, csv, html, method, collisions;
+  report::Reference reference;
   int threads = 0, points = 5, repeats = 3;
   std::uint64_t seed = 1;
   std::size_t calls = 1'000'000;
@@ -55,8 +56,14 @@ int run_accuracy(const Arguments& arguments, Log& log) {
   fmt::print("{}", report::terminal_table(accuracy, wants_colour()));
   if (!arguments.json.empty()) write(arguments.json, report::to_json(accuracy), log);
   if (!arguments.csv.empty()) write(arguments.csv, report::to_csv(accuracy), log);
-  if (!arguments.html.empty())
-    write(arguments.html, report::html_page(accuracy, report::find_extras(accuracy.study)), log);
+  if (!arguments.html.empty()) {
+    auto extras = report::find_extras(accuracy.study);
+    if (!extras.cost) {
+      extras.cost.emplace().reference = arguments.reference;
+      report::add_points(*extras.cost, accuracy, true);
+    }
+    write(arguments.html, report::html_page(accuracy, extras), log);
+  }
   return 0;
 }
 
@@ -82,8 +89,10 @@ int run_learning_curve(const Arguments& arguments, Log& log) {
 }
 
 int run_cost(const Arguments& arguments, Log& log) {
-  report::CostOptions options{
-      .store = arguments.store_path(), .peers = !arguments.no_peers, .n_threads = arguments.n_threads()};
+  report::CostOptions options{.store = arguments.store_path(),
+                              .peers = !arguments.no_peers,
+                              .n_threads = arguments.n_threads(),
+                              .reference = arguments.reference};
   options.studies.assign(arguments.studies.begin(), arguments.studies.end());
   const auto cost = report::cost_report(options, log, base::interrupt_token());
   fmt::print("{}", report::terminal_table(cost));
@@ -110,6 +119,18 @@ void add_common(CLI::App& command, Arguments& arguments) {
   command.add_flag("--quiet", arguments.quiet, "no progress, only results and warnings");
 }
 
+void add_reference(CLI::App& command, Arguments& arguments) {
+  auto& reference = arguments.reference;
+  command.add_option("--case-name", reference.name, "what computed the cases")->capture_default_str();
+  command
+      .add_option("--case-hours", reference.hours,
+                  "what it takes for one case, to show beside the models [h]")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--case-cores", reference.cores, "cores that it takes")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+}
+
 void add_accuracy(CLI::App& app, Arguments& arguments) {
   auto& command = *app.add_subcommand(
       "accuracy", "Errors on the held-out cases, beside every peer; table, JSON, CSV and one HTML page");
@@ -122,6 +143,7 @@ void add_accuracy(CLI::App& app, Arguments& arguments) {
       "further bundles (.elrom) or studies to show beside the peers, separated by commas; repeatable"));
   command.add_flag("--small", arguments.small,
                    "accepted for scripts: this command ends within a minute anyway");
+  add_reference(command, arguments);
   add_common(command, arguments);
 }
 
@@ -159,6 +181,7 @@ void add_cost(CLI::App& app, Arguments& arguments) {
   command.add_flag("--no-peers", arguments.no_peers, "the studies' own models only (an ablation table)");
   command.add_flag("--small", arguments.small,
                    "accepted for scripts: this command ends within a minute anyway");
+  add_reference(command, arguments);
   add_common(command, arguments);
 }
 

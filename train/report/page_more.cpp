@@ -17,8 +17,28 @@ namespace {
 
 using svg::escape;
 
+double training_of(const CostPoint& point) {
+  return point.train_processor_seconds.value_or(point.train_seconds.value_or(std::nan("")));
+}
+
+/// The points that none beats in these two: times ascending, errors falling.
+void draw_front(svg::Chart& chart, const std::vector<double>& times, const std::vector<double>& errors) {
+  std::vector<std::size_t> order(times.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return times[i]; });
+  std::vector<double> x, y;
+  for (const auto i : order) {
+    if (!std::isfinite(times[i]) || !std::isfinite(errors[i]) || (!y.empty() && errors[i] >= y.back()))
+      continue;
+    x.push_back(times[i]);
+    y.push_back(errors[i]);
+  }
+  if (x.size() > 1) chart.line(x, y, "s0", "front");
+}
+
+/// @param reference what the solver takes on this axis; NaN: nothing to compare with
 std::string cost_chart(const CostReport& cost, const std::string& label,
-                       const std::function<double(const CostPoint&)>& time) {
+                       const std::function<double(const CostPoint&)>& time, double reference) {
   std::vector<double> times, errors;
   for (const auto& point : cost.points) {
     times.push_back(time(point));
@@ -26,8 +46,15 @@ std::string cost_chart(const CostReport& cost, const std::string& label,
   }
   if (std::none_of(times.begin(), times.end(), [](double t) { return std::isfinite(t); }))
     return "<p class=\"lead\">not kept</p>";
-  svg::Chart chart({.width = 540, .height = 340, .right = 110}, svg::fit_axis(label, times, 1.0),
-                   svg::fit_axis("mean NRMSE", errors), "Error against " + label);
+  auto all_times = times, all_errors = errors;
+  const bool compared = std::isfinite(reference) && cost.reference.error > 0;
+  if (compared) {
+    all_times.push_back(reference);
+    all_errors.push_back(cost.reference.error);
+  }
+  svg::Chart chart({.width = 540, .height = 340, .right = 110}, svg::fit_axis(label, all_times, 1.0),
+                   svg::fit_axis("mean NRMSE", all_errors, 1.0), "Error against " + label);
+  draw_front(chart, times, errors);
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!std::isfinite(times[i]) || !std::isfinite(errors[i])) continue;
     const auto& point = cost.points[i];
@@ -35,6 +62,10 @@ std::string cost_chart(const CostReport& cost, const std::string& label,
     const auto colon = point.name.rfind(": ");
     chart.label(times[i], errors[i],
                 method_label(colon == std::string::npos ? point.name : point.name.substr(colon + 2)));
+  }
+  if (compared) {
+    chart.points(std::span(&reference, 1), std::span(&cost.reference.error, 1), "s2", cost.reference.name);
+    chart.label(reference, cost.reference.error, cost.reference.name);
   }
   return chart.text();
 }
@@ -196,22 +227,30 @@ std::string learning_section(const LearningCurve& curve) {
 }
 
 std::string cost_section(const CostReport& cost) {
-  std::string body;
+  std::string body, words;
+  for (const auto& sentence : in_words(cost)) words += "<li>" + escape(sentence) + "</li>";
   for (const auto& point : cost.points)
     body += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.1f} ms</td><td style=\"text-align:left\">{}</td></tr>",
-        escape(point.name), score_text(point.error, 4),
-        point.train_seconds ? base::duration(*point.train_seconds) : "not kept", point.predict_ms,
-        point.front ? "on the front" : "");
+        "<tr><td>{}</td><td>{} &plusmn; {:.3f}</td><td>{}</td><td>{:.1f} &plusmn; {:.1f} ms</td><td "
+        "style=\"text-align:left\">{}</td></tr>",
+        escape(point.name), score_text(point.error, 4), point.error_deviation,
+        std::isfinite(training_of(point)) ? base::duration(training_of(point)) : "not kept", point.predict_ms,
+        point.predict_spread_ms, point.front ? "on the front" : "");
+  const double core_seconds = 3600 * cost.reference.hours * cost.reference.cores;
+  const double none = std::nan("");
   return section(
       "cost", "What accuracy costs in time",
-      "Blue: no other is at least as good in error, training and prediction time, and better in one.",
-      "<div class=\"grid2\">" +
-          figure("Training",
-                 cost_chart(cost, "training [s]",
-                            [](const CostPoint& p) { return p.train_seconds.value_or(std::nan("")); })) +
-          figure("Prediction",
-                 cost_chart(cost, "one prediction [ms]", [](const CostPoint& p) { return p.predict_ms; })) +
+      "Processor time, so that a busy machine does not change it. Blue: no other is at least as good in error, "
+      "training and prediction time, and better in one; the line joins what none beats in the two that are drawn. "
+      "The solver's error is the scatter of one run about the mean of repeated ones.",
+      "<ul>" + words + "</ul><div class=\"grid2\">" +
+          figure("Training; the solver: all training cases",
+                 cost_chart(cost, "training [s]", training_of,
+                            core_seconds > 0 ? core_seconds * cost.reference.n_cases : none)) +
+          figure("One prediction; the solver: one case",
+                 cost_chart(
+                     cost, "one prediction [ms]", [](const CostPoint& p) { return p.predict_ms; },
+                     core_seconds > 0 ? 1e3 * core_seconds : none)) +
           "</div><div class=\"scroll\"><table><thead><tr><th>what</th><th>mean "
           "NRMSE</th><th>training</th><th>one prediction</th><th></th></tr></thead><tbody>" +
           body + "</tbody></table></div>");

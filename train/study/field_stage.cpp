@@ -1,8 +1,10 @@
 #include "field_stage.hpp"
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
+#include <deque>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
@@ -17,11 +19,34 @@ using Json = nlohmann::ordered_json;
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
+/// A method whose processor time is kept.
+class Timed final : public methods::Method {
+ public:
+  explicit Timed(const methods::Method& method) : method_(method) {}
+  [[nodiscard]] std::string name() const override { return method_.name(); }
+  [[nodiscard]] std::string key(const std::string& field) const override { return method_.key(field); }
+  [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
+                                                       std::span<const std::size_t> cases,
+                                                       const methods::FitContext& context) const override {
+    const CostClock clock(cost_);
+    return method_.fit(data, cases, context);
+  }
+  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const methods::Folds& folds,
+                                      const methods::FitContext& context) const override {
+    const CostClock clock(cost_);
+    return method_.cross_predict(data, folds, context);
+  }
+  [[nodiscard]] const MethodCost& cost() const { return cost_; }
+
+ private:
+  const methods::Method& method_;
+  mutable MethodCost cost_;
+};
+
 // One method by itself, brought into the same form as a choice among several.
-methods::AutoFit fit_alone(const ModelStage& stage, const std::vector<std::size_t>& rows,
-                           const methods::FitContext& context) {
+methods::AutoFit fit_alone(const ModelStage& stage, const methods::Method& method,
+                           const std::vector<std::size_t>& rows, const methods::FitContext& context) {
   const auto& data = *stage.data;
-  const auto& method = *stage.candidates.front().method;
   methods::AutoFit fit;
   fit.nrmse = fit.nrmse_by_band = NAN;
   if (stage.n_folds > 0) {
@@ -37,20 +62,21 @@ methods::AutoFit fit_alone(const ModelStage& stage, const std::vector<std::size_
 /// Truth minus prediction, each case by a model that never saw it but saw the loads around it, as intervals
 /// promise it: the folds that methods compete in leave gaps, which a new case need not meet. Twice as many of
 /// them, because a model that misses as many cases as those do errs more than the one that will answer.
-MatrixF residuals_of_new_cases(const ModelStage& stage, const methods::AutoFit& fit,
-                               const std::vector<std::size_t>& rows, const methods::FitContext& context) {
+MatrixF residuals_of_new_cases(const ModelStage& stage, const std::vector<const methods::Method*>& methods,
+                               const methods::AutoFit& fit, const std::vector<std::size_t>& rows,
+                               const methods::FitContext& context) {
   const auto& data = *stage.data;
   const auto folds = methods::spread_folds(*data.cases, rows, 2 * stage.n_folds);
   MatrixF residuals = data.values;
   const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);
-  for (std::size_t i = 0; i < stage.candidates.size(); ++i) {
+  for (std::size_t i = 0; i < methods.size(); ++i) {
     const auto& candidate = fit.candidates[i];
     if (candidate.weights.empty()) continue;
     Eigen::RowVectorXf weights(n_columns);
     for (Eigen::Index c = 0; c < n_columns; ++c)
       weights[c] =
           static_cast<float>(candidate.weights[static_cast<std::size_t>(c) % candidate.weights.size()]);
-    const MatrixF predictions = stage.candidates[i].method->cross_predict(data, folds, context);
+    const MatrixF predictions = methods[i]->cross_predict(data, folds, context);
     for (Eigen::Index first = 0; first < residuals.cols(); first += n_columns)
       residuals.middleCols(first, n_columns).array() -=
           predictions.middleCols(first, n_columns).array().rowwise() * weights.array();
@@ -60,7 +86,7 @@ MatrixF residuals_of_new_cases(const ModelStage& stage, const methods::AutoFit& 
   return residuals;
 }
 
-Json accuracy_of(const std::string& name, const methods::AutoFit& fit) {
+Json accuracy_of(const ModelStage& stage, const methods::AutoFit& fit) {
   Json candidates = Json::array();
   for (const auto& candidate : fit.candidates) {
     candidates.push_back({{"name", candidate.name},
@@ -68,7 +94,10 @@ Json accuracy_of(const std::string& name, const methods::AutoFit& fit) {
                           {"weight", candidate.mean_weight()}});
     if (!candidate.failure.empty()) candidates.back()["failure"] = candidate.failure;
   }
-  return {{"method", name},
+  for (const auto& out : stage.left_out)
+    candidates.push_back(
+        {{"name", out.name}, {"nrmse", finite_or_null(out.nrmse)}, {"weight", 0.0}, {"cases", out.n_cases}});
+  return {{"method", stage.name},
           {"kind", fit.model->kind()},
           {"nrmse", finite_or_null(fit.nrmse)},
           {"nrmse_by_band", finite_or_null(fit.nrmse_by_band)},
@@ -80,17 +109,20 @@ Json accuracy_of(const std::string& name, const methods::AutoFit& fit) {
 io::TensorFile ModelStage::compute(const methods::FitContext& running) const {
   auto context = running;
   context.seed = seed;
-  const auto begin = std::chrono::steady_clock::now();
+  if (warm.model != nullptr) context.warm = &warm;
   const auto rows = math::all_rows(data->cases->n_cases());
+  MethodCost cost;
+  std::optional<CostClock> clock(cost);
+  std::deque<Timed> timed;
   std::vector<const methods::Method*> all;
-  for (const auto& candidate : candidates) all.push_back(candidate.method);
+  for (const auto& candidate : candidates) all.push_back(&timed.emplace_back(*candidate.method));
   const auto fit = name == "auto" ? methods::fit_auto(*data, rows, all,
                                                       {.n_folds = n_folds, .band_edges = band_edges}, context)
-                                  : fit_alone(*this, rows, context);
+                                  : fit_alone(*this, *all.front(), rows, context);
   io::TensorFile file;
   if (n_folds > 0) {
     try {
-      model::Uncertainty(residuals_of_new_cases(*this, fit, rows, context), data->cases->mesh.n_columns,
+      model::Uncertainty(residuals_of_new_cases(*this, all, fit, rows, context), data->cases->mesh.n_columns,
                          data->cases->inputs)
           .save(file, "uncertainty");
       file.set_text("has_uncertainty", "yes");
@@ -100,9 +132,14 @@ io::TensorFile ModelStage::compute(const methods::FitContext& running) const {
     }
   }
   fit.model->save(file, "model");
-  file.set_text("accuracy", accuracy_of(name, fit).dump());
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  file.set_text("seconds", base::number(taken.count()));
+  file.set_text("accuracy", accuracy_of(*this, fit).dump());
+  clock.reset();
+  file.set_text("seconds", base::number(cost.seconds));
+  Json costs;
+  for (const auto& method : timed)
+    costs[method.name()] = {{"seconds", method.cost().seconds},
+                            {"processor_seconds", method.cost().processor_seconds}};
+  file.set_text("costs", costs.dump());
   return file;
 }
 
@@ -124,6 +161,15 @@ double FieldStage::seconds() const {
   return file.has_text("seconds") ? base::to_double(file.text("seconds")).value_or(NAN) : NAN;
 }
 
+std::map<std::string, MethodCost> FieldStage::costs() const {
+  std::map<std::string, MethodCost> costs;
+  if (!file.has_text("costs")) return costs;
+  const auto kept = Json::parse(file.text("costs"));
+  for (const auto& [name, cost] : kept.items())
+    costs[name] = {cost.at("seconds").get<double>(), cost.at("processor_seconds").get<double>()};
+  return costs;
+}
+
 FieldStage fit_field(const FieldStageRequest& request, const io::StageCache& cache,
                      const methods::FitContext& context) {
   check(!request.candidates.empty(), "fit_field: a method");
@@ -132,8 +178,13 @@ FieldStage fit_field(const FieldStageRequest& request, const io::StageCache& cac
                    .data = &request.data,
                    .band_edges = request.name == "auto" ? request.band_edges : std::vector<double>(),
                    .n_folds = request.n_folds,
-                   .seed = context.seed};
-  for (const auto* method : request.candidates) stage.candidates.push_back({method, request.data.info.name});
+                   .seed = context.seed,
+                   .warm = request.warm,
+                   .left_out = request.left_out};
+  for (const auto* method : request.candidates) {
+    if (std::ranges::find(request.left_out, method->name(), &LeftOut::name) == request.left_out.end())
+      stage.candidates.push_back({method, request.data.info.name});
+  }
   return {cache.get(request.name + "-" + request.data.info.name, stage, context)};
 }
 

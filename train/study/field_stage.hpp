@@ -4,9 +4,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "earlier_model.hpp"
 #include "elrom/io/stage_cache.hpp"
 #include "elrom/methods/method.hpp"
 #include "elrom/model/uncertainty.hpp"
+#include "timing.hpp"
 
 namespace elrom::study {
 
@@ -19,6 +21,9 @@ struct FieldStage {
   /// What it took when it was fitted, cache hits of later runs notwithstanding; not part of a bundle, whose
   /// bytes repeat.
   [[nodiscard]] double seconds() const;
+  /// What each method that took part cost then: wall and processor seconds of its fit, its cross-validation
+  /// and its share of the intervals. Empty in files of programs that did not keep it.
+  [[nodiscard]] std::map<std::string, MethodCost> costs() const;
   /// {"method", "nrmse", "nrmse_by_band", "candidates": [{"name", "nrmse", "weight"}]}, for the bundle.
   [[nodiscard]] const std::string& accuracy() const { return file.text("accuracy"); }
 };
@@ -40,6 +45,8 @@ struct ModelStage {
   std::vector<double> band_edges;  ///< for "auto": see AutoOptions
   std::size_t n_folds;             ///< cross-validation for error and intervals; 0: none
   base::Seed seed;
+  methods::WarmStart warm;        ///< without a model: from nothing
+  std::vector<LeftOut> left_out;  ///< candidates that are only told of
   [[nodiscard]] io::TensorFile compute(const methods::FitContext& context) const;
 };
 
@@ -49,9 +56,11 @@ struct FieldStageRequest {
   const field::FieldData& data;
   std::vector<double> band_edges;
   std::size_t n_folds = 0;
+  methods::WarmStart warm = {};
+  std::vector<LeftOut> left_out = {};
 };
 
-/// From the cache, or fitted now.
+/// From the cache, or fitted now. Candidates that are left out do not take part.
 [[nodiscard]] FieldStage fit_field(const FieldStageRequest& request, const io::StageCache& cache,
                                    const methods::FitContext& context);
 

@@ -131,6 +131,7 @@ RetrainReport retrain(const std::filesystem::path& folder, const Settings& setti
   Study study(folder, settings, toolbox, log, stop);
   tell_changed_split(study, earlier, held_out_before, log);
   study.reuse_plans_of(earlier);
+  study.begin_at(current);
   study.fit(candidate);
   report.seconds = since(begin);
   report.cases_after = study.cases().n_cases();

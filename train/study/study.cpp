@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "earlier_model.hpp"
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
@@ -126,16 +127,31 @@ struct Study::Impl {
       networks.keep_plan(data.info.name, networks.plan(data, earlier_rows, context()));
   }
 
+  std::vector<LeftOut> left_out_of(const std::string& name, const field::FieldData& data) {
+    if (!earlier || name != "auto") return {};
+    auto out = earlier->left_out(data.info.name, methods.candidates_of(name), cases.n_cases());
+    std::string names;
+    for (const auto& one : out) names += (names.empty() ? "" : ", ") + one.name;
+    if (!out.empty())
+      log.detail(fmt::format("{}: more than {:.0f} % behind last time, so not fitted again: {}",
+                             data.info.name, 100 * EarlierModel::far, names));
+    return out;
+  }
+
   // Peers see no mirrors; whatever else is asked for sees all that the study has.
   FieldStage fit_one(const std::string& name, field::FieldData& data, bool cross_validate) {
-    if (earlier_rows.size() > 1 && methods.trains_networks(name)) reuse_plan(data);
+    const auto left_out = left_out_of(name, data);
+    const bool networks_out = std::ranges::find(left_out, "networks", &LeftOut::name) != left_out.end();
+    if (earlier_rows.size() > 1 && methods.trains_networks(name) && !networks_out) reuse_plan(data);
     data.cases = methods.is_peer(name) ? &plain_cases : &cases;
     const FieldStageRequest request{
         .name = name,
         .candidates = methods.candidates_of(name),
         .data = data,
         .band_edges = settings.bands.edges,
-        .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0};
+        .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0,
+        .warm = earlier ? earlier->warm_start(data.info.name) : methods::WarmStart(),
+        .left_out = left_out};
     auto stage = fit_field(request, cache, context());
     data.cases = &cases;
     return stage;
@@ -158,13 +174,25 @@ struct Study::Impl {
                            base::rounded(main.nrmse(), 3)));
     });
     for (const auto& [name, of_method] : stages) write_bundle(name, of_method, model_path);
-    std::map<std::string, double> method_seconds;
-    for (const auto& [name, of_method] : stages)
-      for (const auto& [field, stage] : of_method) method_seconds[name] += stage.seconds();
+    FitCosts costs;
+    for (const auto& [name, of_method] : stages) {
+      for (const auto& [field, stage] : of_method) {
+        costs.methods[name] += stage.seconds();
+        for (const auto& [part, cost] : stage.costs()) costs.processor[name] += cost.processor_seconds;
+        if (name == settings.method) add_costs(costs.candidates, stage.costs());
+      }
+    }
     write_timing(folder / "timing.json", cache.clock().entries(),
-                 std::chrono::duration<double>(Clock::now() - begin).count(), settings.n_threads(),
-                 method_seconds);
+                 std::chrono::duration<double>(Clock::now() - begin).count(), settings.n_threads(), costs);
     return outcomes;
+  }
+
+  static void add_costs(std::map<std::string, MethodCost>& to,
+                        const std::map<std::string, MethodCost>& costs) {
+    for (const auto& [name, cost] : costs) {
+      to[name].seconds += cost.seconds;
+      to[name].processor_seconds += cost.processor_seconds;
+    }
   }
 
   static FieldOutcome outcome_of(const std::string& field, const FieldStage& stage) {
@@ -206,7 +234,8 @@ struct Study::Impl {
   base::FileLock lock;
   field::SnapshotStore store;
   HeldOut rows;
-  std::vector<std::size_t> earlier_rows;  // of `cases`; retraining only
+  std::vector<std::size_t> earlier_rows;  // of `cases`; retraining only, as is
+  std::optional<EarlierModel> earlier;
   field::CaseSet cases, plain_cases;
   std::vector<field::FieldInfo> fields;
   io::StageCache cache;
@@ -230,6 +259,8 @@ const Settings& Study::settings() const { return impl_->settings; }
 const field::SnapshotStore& Study::store() const { return impl_->store; }
 const field::CaseSet& Study::cases() const { return impl_->cases; }
 const std::vector<std::size_t>& Study::held_out() const { return impl_->rows.held_out; }
+
+void Study::begin_at(const std::filesystem::path& bundle) { impl_->earlier.emplace(bundle); }
 
 void Study::reuse_plans_of(const std::vector<std::string>& earlier_cases) {
   impl_->earlier_rows.clear();

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -51,6 +52,13 @@ std::optional<StudyTiming> read_timing(const std::filesystem::path& path) {
                        .peak_rss_gib = json.value("peak_rss_gib", 0.0),
                        .stages = seconds_of(json, "stages"),
                        .methods = seconds_of(json, "methods")};
+    timing.method_processor_seconds = seconds_of(json, "method_processor_seconds");
+    timing.threads = json.value("threads", 1);
+    timing.processor_seconds = json.value("processor_seconds", 0.0);
+    const auto candidates = json.value("candidates", Json::object());
+    for (const auto& [name, cost] : candidates.items())
+      timing.candidates[name] = {cost.at("seconds").get<double>(),
+                                 cost.at("processor_seconds").get<double>()};
     if (const auto full = json.value("from_nothing", Json()); full.is_object()) {
       timing.full_seconds = full.value("total_seconds", 0.0);
       timing.full_stages = seconds_of(full, "stages");
@@ -67,9 +75,32 @@ double peak_rss_gib() {
   return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);
 }
 
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+namespace {
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+}  // namespace
+
+CostClock::CostClock(MethodCost& cost)
+    : cost_(cost), wall_(wall_seconds()), processor_(processor_seconds()) {}
+
+CostClock::~CostClock() {
+  cost_.seconds += wall_seconds() - wall_;
+  cost_.processor_seconds += processor_seconds() - processor_;
+}
+
 void write_timing(const std::filesystem::path& path,
                   const std::map<std::string, io::StageClock::Entry>& entries, double total_seconds,
-                  int n_threads, const std::map<std::string, double>& methods) {
+                  int n_threads, const FitCosts& costs) {
   Json stages = Json::object();
   std::int64_t reused = 0;
   for (const auto& [stage, entry] : entries) {
@@ -79,10 +110,14 @@ void write_timing(const std::filesystem::path& path,
   auto json = io::json_head<Json>(io::kinds::timing);
   json.update({{"threads", n_threads},
                {"total_seconds", total_seconds},
+               {"processor_seconds", processor_seconds()},
                {"peak_rss_gib", peak_rss_gib()},
                {"stages", stages}});
-  for (const auto& [method, seconds] : methods)
+  for (const auto& [method, seconds] : costs.methods)
     if (std::isfinite(seconds)) json["methods"][method] = seconds;
+  for (const auto& [method, seconds] : costs.processor) json["method_processor_seconds"][method] = seconds;
+  for (const auto& [name, cost] : costs.candidates)
+    json["candidates"][name] = {{"seconds", cost.seconds}, {"processor_seconds", cost.processor_seconds}};
   json["from_nothing"] =
       reused == 0 ? Json{{"total_seconds", total_seconds}, {"stages", stages}} : earlier_full_run(path);
   base::write_text(path, json.dump(1) + "\n");

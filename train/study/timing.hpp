@@ -11,10 +11,33 @@ namespace elrom::study {
 /// Largest resident memory of this process so far [GiB].
 [[nodiscard]] double peak_rss_gib();
 
+/// Processor time of this process so far, all threads, [s].
+[[nodiscard]] double processor_seconds();
+
+/// Adds to a cost what passes until it is destroyed. Processor time is that of the whole process: one such
+/// clock at a time.
+class CostClock {
+ public:
+  explicit CostClock(MethodCost& cost);
+  ~CostClock();
+  CostClock(const CostClock&) = delete;
+  CostClock& operator=(const CostClock&) = delete;
+
+ private:
+  MethodCost& cost_;
+  double wall_, processor_;
+};
+
+/// What was fitted, however long ago, and what each part cost then.
+struct FitCosts {
+  std::map<std::string, double> methods;         ///< seconds of each bundle's method; NaN is left out
+  std::map<std::string, double> processor;       ///< the same in processor seconds
+  std::map<std::string, MethodCost> candidates;  ///< of the model: of each method that took part
+};
+
 /// Keeps, in "from_nothing", the seconds of the last run that reused nothing.
-/// @param methods seconds that each method took when it was fitted, however long ago; NaN is left out
 void write_timing(const std::filesystem::path& path,
                   const std::map<std::string, io::StageClock::Entry>& entries, double total_seconds,
-                  int n_threads, const std::map<std::string, double>& methods = {});
+                  int n_threads, const FitCosts& costs = {});
 
 }  // namespace elrom::study

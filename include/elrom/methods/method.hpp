@@ -10,6 +10,7 @@
 #include "elrom/base/log.hpp"
 #include "elrom/base/random.hpp"
 #include "elrom/field/case_set.hpp"
+#include "elrom/methods/warm_start.hpp"
 #include "elrom/model/field_model.hpp"
 #include "elrom/networks/workers.hpp"
 
@@ -21,6 +22,7 @@ struct FitContext {
   Log* log = &silent_log();
   std::stop_token stop;
   const networks::Workers* workers = nullptr;  ///< other processes that train too; may be missing
+  const WarmStart* warm = nullptr;             ///< where a fit may begin; nullptr: from nothing
 
   /// Trainings that run side by side: each takes one thread, here or in another process.
   [[nodiscard]] int n_trainings() const { return workers == nullptr ? n_threads : workers->n_units(); }

@@ -31,6 +31,7 @@ class BlendModel final : public FieldModel {
   void save(io::TensorFile& file, const std::string& prefix) const override;
   [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
                                                         const Wanted& wanted);
+  [[nodiscard]] const std::vector<Member>& members() const { return parts_; }
 
  private:
   std::vector<Member> parts_;

@@ -66,6 +66,9 @@ class Study {
   /// Retraining: fit() takes the networks' bands and hyperparameters of these earlier cases, where the fast
   /// screen says that the cases since then left the bands as they were.
   void reuse_plans_of(const std::vector<std::string>& earlier_cases);
+  /// Retraining: fit() begins at this bundle where a method can, and tries those candidates again that had a
+  /// part in it or were near to one. What comes out depends on its digest. @throws InputError
+  void begin_at(const std::filesystem::path& bundle);
 
  private:
   struct Impl;

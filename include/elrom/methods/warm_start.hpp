@@ -1,0 +1,26 @@
+#pragma once
+// What an earlier model of a field knows: where a fit may begin instead of from nothing, when a few cases have
+// been added since. A method takes of it what it can use and ignores the rest; what comes out depends on the
+// cases, the settings and the earlier model, and on nothing else.
+//
+// Thread rule: const use from any thread.
+
+#include <memory>
+#include <string>
+
+#include "elrom/model/field_model.hpp"
+#include "elrom/model/smoother_coefficients.hpp"
+
+namespace elrom::methods {
+
+struct WarmStart {
+  std::string parent;                              ///< digest of the bundle that the model is from
+  std::shared_ptr<const model::FieldModel> model;  ///< nullptr: nothing is known
+
+  /// Of all that a result takes from here.
+  [[nodiscard]] const std::string& key() const { return parent; }
+  /// The kernel smoother that the model is, or that is a part of its blend; nullptr: it has none.
+  [[nodiscard]] const model::SmootherCoefficients* smoother() const;
+};
+
+}  // namespace elrom::methods

@@ -1,0 +1,120 @@
+#include "elrom/study/budget.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "elrom/base/error.hpp"
+#include "elrom/study/study.hpp"
+#include "study_fixture.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace elrom::study {
+namespace {
+
+CostModel model_of(double seconds_per_fit) {
+  return {.seconds_per_fit = seconds_per_fit, .n_fields = 9, .n_threads = 2};
+}
+
+TEST(Budget, LevelsCostMoreOneAfterTheOther) {
+  const auto levels = budget_levels({}, model_of(1));
+
+  ASSERT_EQ(levels.size(), 5u);
+  for (std::size_t i = 1; i < levels.size(); ++i) EXPECT_GT(levels[i].seconds, levels[i - 1].seconds);
+  EXPECT_EQ(levels.front().seconds, 9 * (1 + 3.0 * 2 / 2));  // a fit, and 6 of the folds on 2 threads
+  EXPECT_TRUE(levels.back().settings.peers.networks);
+  EXPECT_FALSE(levels.front().settings.peers.networks);
+}
+
+TEST(Budget, WhatWasRuledOutStaysOut) {
+  Settings settings;
+  settings.peers.networks = false;
+  settings.peers.folds = 3;
+
+  for (const auto& level : budget_levels(settings, model_of(1))) {
+    EXPECT_FALSE(level.settings.peers.networks);
+    EXPECT_LE(level.settings.peers.folds, 3);
+  }
+}
+
+TEST(Budget, TheDearestLevelThatFitsIsTakenAndNetworksComeAfterAModelThatStands) {
+  const auto levels = budget_levels({}, model_of(1));
+
+  EXPECT_EQ(levels_within(levels, 1).size(), 1u) << "too short for any: the cheapest";
+  EXPECT_EQ(levels_within(levels, 1).front().name, levels.front().name);
+  EXPECT_EQ(levels_within(levels, 1.2 * levels[3].seconds).front().name, levels[3].name);
+  const auto all = levels_within(levels, 1.2 * (levels[3].seconds + levels[4].seconds));
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all.back().name, levels[4].name);
+}
+
+TEST(Budget, WhatWasLeftOutIsSaidWithItsTime) {
+  const auto levels = budget_levels({}, model_of(10));
+  const auto chosen = levels_within(levels, 1.2 * levels[3].seconds);
+  auto model = model_of(10);
+  model.networks_had_no_part = true;
+
+  const auto words = left_out(levels, chosen, model);
+
+  ASSERT_EQ(words.size(), 1u);
+  EXPECT_THAT(words.front(), ::testing::HasSubstr("networks too"));
+  EXPECT_THAT(words.front(), ::testing::HasSubstr("expect nothing of it"));
+}
+
+TEST(Budget, ALevelThatIsNotDoneInTimeIsStoppedAndTheOneBeforeStands) {
+  const auto levels = budget_levels({}, model_of(1));
+  std::vector<std::string> trained;
+  const auto begin = std::chrono::steady_clock::now();
+
+  const auto settings = run_within(0.2, {levels[2], levels[4]}, silent_log(), {},
+                                   [&](const Settings& own, const std::stop_token& stop) {
+                                     trained.push_back(own.peers.networks ? "networks" : "without");
+                                     while (own.peers.networks && !stop.stop_requested())
+                                       std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                                     if (stop.stop_requested()) throw Interrupted("stopped");
+                                   });
+
+  EXPECT_EQ(trained, (std::vector<std::string>{"without", "networks", "without"}));
+  EXPECT_FALSE(settings.peers.networks);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
+TEST(Budget, WhenNotEvenTheCheapestIsDoneInTimeASimplePeerAnswers) {
+  const auto levels = budget_levels({}, model_of(1));
+  int n = 0;
+
+  const auto settings =
+      run_within(0.05, {levels[0]}, silent_log(), {}, [&](const Settings& own, const std::stop_token& stop) {
+        ++n;
+        while (own.method == "auto" && !stop.stop_requested())
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (stop.stop_requested()) throw Interrupted("stopped");
+      });
+
+  EXPECT_EQ(settings.method, "pod_rbf");
+  EXPECT_EQ(n, 2);
+}
+
+TEST(Budget, ACallerWhoStopsIsNotTakenForTheClock) {
+  std::stop_source source;
+  source.request_stop();
+
+  EXPECT_THROW(
+      (void)run_within(60, {budget_levels({}, model_of(1)).front()}, silent_log(), source.get_token(),
+                       [](const Settings&, const std::stop_token&) { throw Interrupted("stopped"); }),
+      Interrupted);
+}
+
+TEST(Budget, TheCostModelTimesAFitOfThisStudy) {
+  const test::TemporaryFolder folder;
+  write_small_store(folder / "snapshots.h5", 15);
+
+  const auto model = cost_model(folder.path(), read_settings(folder / "study.toml"), silent_log());
+
+  EXPECT_GT(model.seconds_per_fit, 0);
+  EXPECT_EQ(model.n_fields, 2u);
+}
+
+}  // namespace
+}  // namespace elrom::study

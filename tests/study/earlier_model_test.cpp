@@ -1,0 +1,121 @@
+#include "earlier_model.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "elrom/methods/peers.hpp"
+#include "elrom/model/bundle.hpp"
+#include "elrom/study/study.hpp"
+#include "study_fixture.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace elrom::study {
+namespace {
+
+using Names = std::set<std::string>;
+
+/// A study of 15 cases, 3 of them held out; `grow` adds 3 more.
+class EarlierModels : public ::testing::Test {
+ protected:
+  EarlierModels() { write_small_store(folder_ / "snapshots.h5", 15); }
+  void grow() const { write_small_store(folder_ / "snapshots.h5", 3, 15); }
+  [[nodiscard]] Settings settings() const {
+    return read_settings(folder_ / "study.toml", {"effort=quick", "peers.networks=false", "threads=1"});
+  }
+  void fit() const { Study(folder_.path(), settings(), {}, silent_log(), {}).fit(); }
+  /// Of a bundle in the folder.
+  [[nodiscard]] nlohmann::json accuracy(const std::string& bundle = "model.elrom") const {
+    return nlohmann::json::parse(model::BundleReader(folder_ / bundle).info().accuracy_json);
+  }
+  /// "again.elrom", begun at model.elrom whether or not it is better.
+  void fit_again(int threads = 1) const {
+    auto own = settings();
+    own.threads = threads;
+    Study study(folder_.path(), own, {}, silent_log(), {});
+    study.begin_at(folder_ / "model.elrom");
+    study.fit(folder_ / "again.elrom");
+  }
+  [[nodiscard]] Names kept_results() const {
+    Names names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "stages"))
+      names.insert(entry.path().filename().string());
+    return names;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(EarlierModels, CandidatesFarBehindStayOutUntilTheCasesHaveGrownByAQuarter) {
+  fit();
+  const EarlierModel earlier(folder_ / "model.elrom");
+  const auto linear = methods::make_peer("linear");
+  const auto nearest = methods::make_peer("nearest");
+  const std::vector<const methods::Method*> candidates{linear.get(), nearest.get()};
+  const auto own = accuracy()["pressure"]["candidates"];
+  double best = 1e9, of_nearest = 0;
+  for (const auto& one : own) {
+    if (one["weight"] > 0) best = std::min(best, one["nrmse"].get<double>());
+    if (one["name"] == "nearest") of_nearest = one["nrmse"];
+  }
+  ASSERT_GT(of_nearest, 1.02 * best);
+
+  const auto out = earlier.left_out("pressure", candidates, 14);
+
+  ASSERT_EQ(out.size(), 1u);
+  EXPECT_EQ(out.front().name, "nearest");
+  EXPECT_EQ(out.front().nrmse, of_nearest);
+  EXPECT_EQ(out.front().n_cases, 12u);
+  EXPECT_EQ(earlier.left_out("pressure", candidates, 15).size(), 1u);
+  EXPECT_TRUE(earlier.left_out("pressure", candidates, 16).empty());
+  EXPECT_TRUE(earlier.left_out("no such field", candidates, 14).empty());
+}
+
+TEST_F(EarlierModels, ARetrainedBundleTellsOfThoseLeftOutAndWhenTheyWereFitted) {
+  fit();
+  grow();
+
+  fit_again();
+
+  int told = 0;
+  const auto again = accuracy("again.elrom");
+  for (const auto& candidate : again["pressure"]["candidates"]) {
+    if (!candidate.contains("cases")) continue;
+    ++told;
+    EXPECT_EQ(candidate["cases"], 12);
+    EXPECT_EQ(candidate["weight"], 0.0);
+  }
+  EXPECT_GT(told, 0);
+}
+
+TEST_F(EarlierModels, ResultsThatBeganAtAnotherModelAreNotTaken) {
+  fit();
+  const auto cold = kept_results();
+
+  fit_again();  // the same cases: all that differs is where it began
+
+  EXPECT_GT(kept_results().size(), cold.size());
+  const auto warm = kept_results();
+  fit();
+  EXPECT_EQ(kept_results(), warm) << "and a fit from nothing takes its own";
+}
+
+TEST_F(EarlierModels, BeginningTwiceAtTheSameModelGivesTheSameBytesForAnyThreads) {
+  fit();
+  const auto first = test::read_bytes(folder_ / "model.elrom");
+  grow();
+  const auto bytes_with = [&](int threads) {
+    std::filesystem::remove_all(folder_ / "stages");
+    fit_again(threads);
+    return test::read_bytes(folder_ / "again.elrom");
+  };
+
+  const auto one = bytes_with(1);
+
+  EXPECT_EQ(bytes_with(3), one);
+  EXPECT_NE(one, first);
+}
+
+}  // namespace
+}  // namespace elrom::study

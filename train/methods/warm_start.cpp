@@ -1,0 +1,23 @@
+#include "elrom/methods/warm_start.hpp"
+
+#include "elrom/model/composite_models.hpp"
+#include "elrom/model/pod_model.hpp"
+
+namespace elrom::methods {
+namespace {
+
+const model::SmootherCoefficients* smoother_of(const model::FieldModel* model) {
+  if (const auto* modes = dynamic_cast<const model::PodModel*>(model))
+    return dynamic_cast<const model::SmootherCoefficients*>(&modes->coefficients());
+  const auto* blend = dynamic_cast<const model::BlendModel*>(model);
+  if (blend == nullptr) return nullptr;
+  for (const auto& member : blend->members())
+    if (const auto* found = smoother_of(member.model.get())) return found;
+  return nullptr;
+}
+
+}  // namespace
+
+const model::SmootherCoefficients* WarmStart::smoother() const { return smoother_of(model.get()); }
+
+}  // namespace elrom::methods

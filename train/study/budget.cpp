@@ -1,0 +1,201 @@
+#include "elrom/study/budget.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/field/snapshot_store.hpp"
+#include "elrom/math/statistics.hpp"
+#include "elrom/methods/kernel_method.hpp"
+#include "elrom/model/bundle.hpp"
+#include "elrom/study/held_out.hpp"
+#include "elrom/study/study.hpp"
+#include "elrom/study/timing.hpp"
+
+namespace elrom::study {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::json;
+
+constexpr int fewest_folds = 2, some_folds = 4;
+constexpr double peers_beside =
+    1.25;  // a run with the simple peers, as a multiple of one with the kernel alone
+constexpr double standard_networks = 5;  // effort "standard" as a multiple of "quick", of networks alone
+constexpr double margin = 0.85;          // share of the time that is planned with: other work comes and goes
+
+constexpr double for_a_simple_peer = 0.07;  // share of the time kept back while there is no model at all
+
+double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Asks to stop when the time is up, or when somebody else asks.
+class Deadline {
+ public:
+  Deadline(double seconds, const std::stop_token& outer)
+      : passes_on_(outer, [this] { source_.request_stop(); }),
+        timer_([this, seconds](const std::stop_token& done) {
+          std::mutex mutex;
+          std::unique_lock lock(mutex);
+          std::condition_variable_any never;
+          never.wait_for(lock, done, std::chrono::duration<double>(seconds), [] { return false; });
+          if (!done.stop_requested()) source_.request_stop();
+        }) {}
+  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+  std::stop_callback<std::function<void()>> passes_on_;
+  std::jthread timer_;
+};
+
+/// The kernel's fit of one field on all training cases, on one thread.
+double calibrate(const field::SnapshotStore& store, const Settings& settings, const std::string& field,
+                 Log& log) {
+  const auto rows = hold_out(store, held_out_patterns(store, settings, log)).building;
+  const auto cases = study_cases(store, settings, rows, log);
+  const auto& fields = store.fields();
+  const auto info = std::ranges::find(fields, field, &field::FieldInfo::name);
+  const field::FieldData data{&cases, *info, store.read(field, rows)};
+  const auto kernel = methods::make_kernel_method();
+  const auto begin = Clock::now();
+  (void)kernel->fit(data, math::all_rows(cases.n_cases()), {});
+  return since(begin);
+}
+
+void read_earlier_run(CostModel& model, const std::filesystem::path& folder) {
+  const auto bundle = folder / "model.elrom";
+  if (!std::filesystem::exists(bundle)) return;
+  const auto accuracy = Json::parse(model::BundleReader(bundle).info().accuracy_json, nullptr, false);
+  int tried = 0, used = 0;
+  for (const auto& [field, entry] : accuracy.items()) {
+    const auto candidates = entry.value("candidates", Json::array());
+    for (const auto& candidate : candidates) {
+      if (candidate.value("name", "") != "networks") continue;
+      ++tried;
+      used += candidate.value("weight", 0.0) > 0 ? 1 : 0;
+    }
+  }
+  model.networks_had_no_part = tried > 0 && used == 0;
+  const auto timing = read_timing(folder / "timing.json");
+  if (!timing) return;
+  const auto networks = timing->candidates.find("networks");
+  double others = 0;
+  for (const auto& [name, cost] : timing->candidates)
+    if (name != "networks") others += cost.processor_seconds;
+  if (networks != timing->candidates.end() && others > 0)
+    model.networks = 1 + networks->second.processor_seconds / others;
+}
+
+/// Fits of one method a field: the model's, those of the contest, twice as many for the intervals.
+double seconds_without_networks(const CostModel& model, int folds, bool with_peers) {
+  const double side_by_side = std::min(model.n_threads, folds);
+  const double fits = 1 + 3.0 * folds / std::max(1.0, side_by_side);
+  return model.seconds_per_fit * static_cast<double>(model.n_fields) * fits * (with_peers ? peers_beside : 1);
+}
+
+Settings without_networks(Settings settings, int folds, bool with_peers) {
+  settings.peers.networks = false;
+  settings.peers.folds = std::min(settings.peers.folds, folds);
+  if (!with_peers) settings.peers.methods.clear();
+  return settings;
+}
+
+}  // namespace
+
+CostModel cost_model(const std::filesystem::path& folder, const Settings& settings, Log& log) {
+  const std::filesystem::path named(settings.store);
+  const auto store = field::SnapshotStore::open(named.is_absolute() ? named : folder / named);
+  const auto fields = field::choose_fields(store.fields(), settings.fields, "fields.names");
+  CostModel model{.n_fields = fields.size(), .n_threads = settings.n_threads()};
+  read_earlier_run(model, folder);
+  model.seconds_per_fit = calibrate(store, settings, fields.front().name, log);
+  return model;
+}
+
+std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel& model) {
+  const auto level = [&](const std::string& name, int folds, bool with_peers) {
+    const auto own = without_networks(settings, folds, with_peers);
+    return BudgetLevel{fmt::format("{}, {} folds", name, own.peers.folds), own,
+                       seconds_without_networks(model, own.peers.folds, with_peers)};
+  };
+  if (settings.method != "auto") return {{settings.method + " as asked", settings, 0}};
+  std::vector<BudgetLevel> levels{level("kernel alone", fewest_folds, false),
+                                  level("kernel alone", some_folds, false),
+                                  level("kernel and simple peers", some_folds, true),
+                                  level("kernel and simple peers", settings.peers.folds, true)};
+  if (!settings.peers.networks) return levels;
+  const double base = levels.back().seconds;
+  auto with = settings;
+  levels.push_back(
+      {fmt::format("networks too, effort {}", settings.effort), with,
+       base * (settings.effort == "quick" ? model.networks : 1 + standard_networks * (model.networks - 1))});
+  return levels;
+}
+
+std::vector<BudgetLevel> levels_within(const std::vector<BudgetLevel>& levels, double seconds) {
+  std::vector<BudgetLevel> chosen;
+  double left = margin * seconds;
+  for (const auto& level : levels) {
+    if (level.settings.peers.networks && level.settings.method == "auto") {
+      if (!chosen.empty() && level.seconds <= left - chosen.back().seconds) chosen.push_back(level);
+    } else if (chosen.empty() || level.seconds <= left) {
+      chosen.assign(1, level);
+    }
+  }
+  return chosen;
+}
+
+std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const std::vector<BudgetLevel>& run,
+                                  const CostModel& model) {
+  std::vector<std::string> words;
+  for (const auto& level : levels) {
+    if (std::ranges::find(run, level.name, &BudgetLevel::name) != run.end()) continue;
+    if (!run.empty() && level.seconds <= run.front().seconds) continue;
+    auto text = fmt::format("left out: {} (about {})", level.name, base::duration(level.seconds));
+    if (level.settings.peers.networks)
+      text += model.networks_had_no_part
+                  ? "; they had no part in the present model, which tried them: expect nothing of it"
+                  : "; on the shipped cases they cost several times the rest and bought nothing";
+    else
+      text += level.settings.peers.methods.empty()
+                  ? "; intervals and errors from models that miss fewer cases"
+                  : "; a peer that beats the kernel on some field would be found";
+    words.push_back(text);
+  }
+  return words;
+}
+
+Settings run_within(double seconds, const std::vector<BudgetLevel>& chosen, Log& log,
+                    const std::stop_token& stop,
+                    const std::function<void(const Settings&, std::stop_token)>& train) {
+  check(!chosen.empty(), "run_within: a level");
+  const auto begin = Clock::now();
+  const BudgetLevel* done = nullptr;
+  for (const auto& level : chosen) {
+    const double kept_back = done == nullptr ? for_a_simple_peer : 0;
+    const Deadline deadline((1 - kept_back) * seconds - since(begin), stop);
+    try {
+      train(level.settings, deadline.token());
+      done = &level;
+    } catch (const Interrupted&) {
+      if (stop.stop_requested()) throw;
+      log.warning(fmt::format("the time is up before '{}' is done", level.name));
+      break;
+    }
+  }
+  if (done == &chosen.back()) return done->settings;
+  auto rest =
+      done != nullptr ? done->settings : without_networks(chosen.front().settings, fewest_folds, false);
+  if (done == nullptr) rest.method = "pod_rbf";
+  train(rest, stop);  // what was made already is kept: this writes it again
+  return rest;
+}
+
+}  // namespace elrom::study
