@@ -60,6 +60,14 @@ MatrixF residuals_of_new_cases(const ModelStage& stage, const methods::AutoFit& 
   return residuals;
 }
 
+/// Of each case, for the gate between this model and a later one.
+Json squared_errors(const MatrixF& residuals) {
+  Json errors = Json::array();
+  for (Eigen::Index i = 0; i < residuals.rows(); ++i)
+    errors.push_back(residuals.row(i).cast<double>().squaredNorm());
+  return errors;
+}
+
 Json accuracy_of(const std::string& name, const methods::AutoFit& fit) {
   Json candidates = Json::array();
   for (const auto& candidate : fit.candidates) {
@@ -88,10 +96,12 @@ io::TensorFile ModelStage::compute(const methods::FitContext& running) const {
                                                       {.n_folds = n_folds, .band_edges = band_edges}, context)
                                   : fit_alone(*this, rows, context);
   io::TensorFile file;
+  auto accuracy = accuracy_of(name, fit);
   if (n_folds > 0) {
     try {
-      model::Uncertainty(residuals_of_new_cases(*this, fit, rows, context), data->cases->mesh.n_columns,
-                         data->cases->inputs)
+      auto residuals = residuals_of_new_cases(*this, fit, rows, context);
+      accuracy["squared_errors"] = squared_errors(residuals);
+      model::Uncertainty(std::move(residuals), data->cases->mesh.n_columns, data->cases->inputs)
           .save(file, "uncertainty");
       file.set_text("has_uncertainty", "yes");
     } catch (const NumericalError& error) {
@@ -100,7 +110,7 @@ io::TensorFile ModelStage::compute(const methods::FitContext& running) const {
     }
   }
   fit.model->save(file, "model");
-  file.set_text("accuracy", accuracy_of(name, fit).dump());
+  file.set_text("accuracy", accuracy.dump());
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   file.set_text("seconds", base::number(taken.count()));
   return file;

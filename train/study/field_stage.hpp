@@ -19,7 +19,8 @@ struct FieldStage {
   /// What it took when it was fitted, cache hits of later runs notwithstanding; not part of a bundle, whose
   /// bytes repeat.
   [[nodiscard]] double seconds() const;
-  /// {"method", "nrmse", "nrmse_by_band", "candidates": [{"name", "nrmse", "weight"}]}, for the bundle.
+  /// {"method", "nrmse", "nrmse_by_band", "candidates": [{"name", "nrmse", "weight"}], "squared_errors"}, for
+  /// the bundle; the last by case, summed over cells, each case by a model that did not see it.
   [[nodiscard]] const std::string& accuracy() const { return file.text("accuracy"); }
 };
 
