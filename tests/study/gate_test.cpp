@@ -28,8 +28,8 @@ class Gate : public ::testing::Test {
     (void)study.fit(path);
     return path;
   }
-  [[nodiscard]] Verdict judged(const std::string& present, const std::string& candidate, bool hold_out = true,
-                               const GateSettings& settings = {}) const {
+  [[nodiscard]] GateVerdict judged(const std::string& present, const std::string& candidate,
+                                   bool hold_out = true, const GateSettings& settings = {}) const {
     const auto store = field::SnapshotStore::open(folder_ / "snapshots.h5");
     const auto before = bundle(present, hold_out), after = bundle(candidate, hold_out);
     const auto all = store.find("*"), train = store.find("train_*");

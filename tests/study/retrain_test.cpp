@@ -182,7 +182,7 @@ TEST(RetrainReport, IsWrittenAsDocumented) {
       .cases_before = 3, .cases_after = 5, .seconds = 2.5, .seconds_from_nothing = {}, .nothing_new = false};
   report.promotion.kind = Promotion::Kind::promoted;
   report.promotion.number = 7;
-  report.promotion.verdict = Verdict();
+  report.promotion.verdict = GateVerdict();
   report.promotion.verdict->judged_on = "held-out cases";
   report.promotion.verdict->mean.before = 0.25;
   report.promotion.verdict->mean.after = 0.125;

@@ -119,7 +119,7 @@ std::map<std::string, Effect> effects() {
           {"seed", {"2", all}},
           {"threads", {"1", none}},
           {"device", {"cuda", none}},  // reaches stages by the trainer's name
-          {"date", {"2026-11-24", none}},
+          {"date", {"\"2026-11-24\"", none}},
           {"train.exclude", {"[\"train_0\"]", all}},
           {"gate.tolerance", {"0.02", none}},
           {"gate.deviations", {"2", none}},

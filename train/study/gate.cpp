@@ -254,7 +254,7 @@ class CrossValidation {
   std::vector<Common> common_;
 };
 
-void add_mean(Verdict& verdict, const GateSettings& settings) {
+void add_mean(GateVerdict& verdict, const GateSettings& settings) {
   auto& mean = verdict.mean;
   const auto n = static_cast<double>(verdict.fields.size());
   for (const auto& one : verdict.fields) {
@@ -285,7 +285,7 @@ std::string_view name_of(Change change) {
   return change == Change::better ? "better" : change == Change::worse ? "worse" : "the same";
 }
 
-std::vector<std::string> Verdict::what_is_worse() const {
+std::vector<std::string> GateVerdict::what_is_worse() const {
   std::vector<std::string> names;
   for (const auto& one : fields)
     if (one.change == Change::worse) names.push_back(one.field);
@@ -293,8 +293,8 @@ std::vector<std::string> Verdict::what_is_worse() const {
   return names;
 }
 
-std::optional<Verdict> judge(const std::filesystem::path& present, const std::filesystem::path& candidate,
-                             const GateCases& cases, const GateSettings& settings, int n_threads) {
+std::optional<GateVerdict> judge(const std::filesystem::path& present, const std::filesystem::path& candidate,
+                                 const GateCases& cases, const GateSettings& settings, int n_threads) {
   const model::BundleReader before(present), after(candidate);
   if (!comparable(before, cases.store) || !comparable(after, cases.store)) return std::nullopt;
   const auto fields = common_fields(before.info(), after.info(), cases.store);
@@ -304,7 +304,7 @@ std::optional<Verdict> judge(const std::filesystem::path& present, const std::fi
     const auto& name = cases.store.cases()[i].inputs.name;
     return holds(before.info().cases, name) || holds(after.info().cases, name);
   });
-  Verdict verdict;
+  GateVerdict verdict;
   if (!judged.scored.empty()) {
     verdict.judged_on = "held-out cases";
     verdict.scatter_from = judged.repeats.empty() ? "errors" : "repeated runs";
@@ -322,7 +322,7 @@ std::optional<Verdict> judge(const std::filesystem::path& present, const std::fi
   return verdict;
 }
 
-std::string to_json(const Verdict& verdict) {
+std::string to_json(const GateVerdict& verdict) {
   Json json{{"judged_on", verdict.judged_on},
             {"scatter_from", verdict.scatter_from},
             {"cases", verdict.cases},
@@ -341,7 +341,7 @@ std::string to_json(const Verdict& verdict) {
   return json.dump();
 }
 
-std::string in_words(const Verdict& verdict) {
+std::string in_words(const GateVerdict& verdict) {
   auto text =
       fmt::format("{:<24} {:>9} {:>9} {:>9}  NRMSE on {} {}\n", "field", "present", "new", "scatter",
                   verdict.cases.size(),

@@ -26,8 +26,8 @@ struct Lineage {
 
 using FieldStages = std::map<std::string, FieldStage>;
 
-/// Digest of what the bundle is made of; of its stages, by their inputs. No time of day, so that the same study
-/// gives the same bytes, and no lineage, so that a second run finds what the first one made.
+/// Digest of what the bundle is made of; of its stages, by their inputs. No time of day, so that the
+/// same study gives the same bytes, and no lineage, so that a second run finds what the first one made.
 [[nodiscard]] std::string content_of(const StudyBundle& bundle, const FieldStages& stages);
 
 /// Whether there is a whole bundle of this content.

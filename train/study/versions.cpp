@@ -143,7 +143,7 @@ void Versions::link_current(int number) const {
   link_to(study_ / "model.elrom", fs::path("models") / "current");
 }
 
-/// A plain file model.elrom becomes a version by a second name; its own name stays until the link replaces it.
+/// A plain file model.elrom becomes a version by a second name; its own stays until the link replaces it.
 void Versions::take_in() {
   const auto plain = study_ / "model.elrom";
   if (!fs::is_regular_file(fs::symlink_status(plain))) return;

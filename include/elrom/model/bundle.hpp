@@ -32,7 +32,7 @@ struct BundleInfo {
   /// program, digests of store and settings; from 1.2 also the digest of the parent, the bundle that it was
   /// made to take the place of, and the date it was told; what is not known is left out
   std::map<std::string, std::string> provenance;
-  /// Of the study, as TOML, without what says how and where it runs (threads, device, store); empty: before 1.2
+  /// Of the study, as TOML; what says how and where it runs is at its default. Empty: before 1.2
   std::string settings;
   std::string accuracy_json = "{}";  ///< cross-validated errors by field, kept for display
 };

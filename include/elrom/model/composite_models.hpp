@@ -39,8 +39,8 @@ class BlendModel final : public FieldModel {
   std::vector<Member> parts_;
 };
 
-/// The model as it would be with one case more (PodModel::with_case); of a blend, the parts that have a closed
-/// form. nullptr: nothing of it has.
+/// The model as it would be with one case more (PodModel::with_case); of a blend, the parts
+/// that have a closed form. nullptr: nothing of it has.
 [[nodiscard]] std::unique_ptr<FieldModel> with_case(const FieldModel& model, std::span<const double> inputs,
                                                     std::span<const float> values);
 

@@ -50,8 +50,8 @@ struct FieldOutcome {
 struct Promotion {
   enum class Kind { first, unchanged, promoted, refused };
   Kind kind = Kind::first;
-  int number = 0;                       ///< version of the model; of the present one where it is unchanged
-  std::optional<Verdict> verdict = {};  ///< where there was a present model to compare with
+  int number = 0;  ///< version of the model; of the present one where it is unchanged
+  std::optional<GateVerdict> verdict = {};  ///< where there was a present model to compare with
 };
 
 /// Thread rule: one thread at a time; settings.n_threads() is used inside.
