@@ -163,7 +163,9 @@ Json describe_bundle(const model::BundleReader& bundle) {
         {{"name", field.name}, {"unit", field.unit}, {"model", bundle.model(field.name)->kind()}});
   }
   result["cases"] = info.cases;
+  if (!info.case_digests.empty()) result["case_digests"] = info.case_digests;
   result["provenance"] = info.provenance;
+  if (!info.settings.empty()) result["settings"] = info.settings;
   result["accuracy"] = Json::parse(info.accuracy_json, nullptr, false);
   if (result["accuracy"].is_discarded()) result["accuracy"] = nullptr;
   result["digest"] = bundle.digest();

@@ -98,6 +98,18 @@ std::string case_words(const Json& one) {
   return text + range_table(one["fields"], "field") + "digest " + one["digest"].get<std::string>() + "\n";
 }
 
+/// Training cases with the beginnings of their digests, four a line.
+std::string case_words_of(const Json& bundle) {
+  if (!bundle.contains("case_digests")) return {};
+  std::string text = "training cases, and the beginning of each one's digest";
+  for (std::size_t i = 0; i < bundle["cases"].size(); ++i) {
+    const auto digest = bundle["case_digests"][i].get<std::string>().substr(0, 8);
+    text += fmt::format("{}{:<18}{:<10}", i % 4 == 0 ? "\n  " : "", bundle["cases"][i].get<std::string>(),
+                        digest);
+  }
+  return text + "\n";
+}
+
 std::string bundle_words(const Json& bundle) {
   std::string text =
       fmt::format("model of method '{}', trained on {} cases\nmesh: ", bundle["method"].get<std::string>(),
@@ -116,7 +128,7 @@ std::string bundle_words(const Json& bundle) {
   for (const auto& [key, value] : bundle["provenance"].items()) {
     text += fmt::format("  {:<28}{}\n", key, value.get<std::string>());
   }
-  return text + "digest " + bundle["digest"].get<std::string>() + "\n";
+  return text + case_words_of(bundle) + "digest " + bundle["digest"].get<std::string>() + "\n";
 }
 
 std::string prediction_words(const Json& one) {

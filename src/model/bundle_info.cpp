@@ -54,6 +54,8 @@ std::string to_json(const BundleDescription& description) {
             {"cases", info.cases},
             {"provenance", info.provenance},
             {"accuracy", info.accuracy_json}};
+  if (!info.case_digests.empty()) json["case_digests"] = info.case_digests;
+  if (!info.settings.empty()) json["settings"] = info.settings;
   json["fields"] = Json::array();
   for (const auto& field : info.fields) json["fields"].push_back(to_json(field));
   json["inputs"] = Json::array();
@@ -76,6 +78,14 @@ BundleDescription bundle_description(const std::string& text, const std::string&
     info.cases = json.at("cases").get<std::vector<std::string>>();
     info.provenance = json.at("provenance").get<std::map<std::string, std::string>>();
     info.accuracy_json = json.at("accuracy").get<std::string>();
+    info.case_digests = json.value("case_digests", std::vector<std::string>());
+    info.settings = json.value("settings", std::string());
+    if (!info.case_digests.empty() && info.case_digests.size() != info.cases.size()) {
+      throw InputError({.what = "broken bundle description",
+                        .where = where,
+                        .found = std::to_string(info.case_digests.size()) + " case_digests",
+                        .expected = "one for each of " + std::to_string(info.cases.size()) + " cases"});
+    }
     for (const auto& field : json.at("fields")) info.fields.push_back(field_from_json(field));
     std::vector<field::InputInfo> inputs;
     for (const auto& input : json.at("inputs")) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elrom/base/error.hpp"
+#include "elrom/model/pod_model.hpp"
 #include "model_parts.hpp"
 
 namespace elrom::model {
@@ -59,6 +60,34 @@ void BlendModel::predict(const Query& query, std::span<float> values, std::span<
       for (std::size_t c = 0; c < weights.size(); ++c)
         spread[first + c] += std::abs(weights[c]) * own_spread[first + c];
   }
+}
+
+std::unique_ptr<FieldModel> BlendModel::without_case(std::size_t i_case) const {
+  auto parts = parts_;
+  bool any = false;
+  for (Member& part : parts) {
+    auto reduced = part.model->without_case(i_case);
+    if (!reduced) continue;
+    part.model = std::move(reduced);
+    any = true;
+  }
+  return any ? std::make_unique<BlendModel>(std::move(parts)) : nullptr;
+}
+
+std::unique_ptr<FieldModel> with_case(const FieldModel& model, std::span<const double> inputs,
+                                      std::span<const float> values) {
+  if (const auto* modes = dynamic_cast<const PodModel*>(&model)) return modes->with_case(inputs, values);
+  const auto* blend = dynamic_cast<const BlendModel*>(&model);
+  if (blend == nullptr) return nullptr;
+  auto parts = blend->members();
+  bool any = false;
+  for (auto& part : parts) {
+    auto changed = with_case(*part.model, inputs, values);
+    if (!changed) continue;
+    part.model = std::move(changed);
+    any = true;
+  }
+  return any ? std::make_unique<BlendModel>(std::move(parts)) : nullptr;
 }
 
 void BlendModel::save(io::TensorFile& file, const std::string& prefix) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elrom/base/error.hpp"
+#include "elrom/model/smoother_coefficients.hpp"
 #include "model_parts.hpp"
 
 namespace elrom::model {
@@ -116,6 +117,53 @@ void PodModel::predict(const Query& query, std::span<float> values, std::span<fl
     add_modes(modes + plane * plane_size, v, true, s, workspace);
     for (float& deviation : s) deviation = std::sqrt(deviation);
   }
+}
+
+void PodModel::add_modes_everywhere(std::span<const float> weights, std::span<float> out) const {
+  const std::size_t plane_size = n_modes_ * parts_.modes.shape()[2];
+  Workspace workspace;
+  for (std::size_t plane = 0; plane < n_planes_; ++plane)
+    add_modes(parts_.modes.f32().data() + plane * plane_size, weights, false,
+              out.subspan(plane * n_columns_, n_columns_), workspace);
+}
+
+std::unique_ptr<FieldModel> PodModel::of_other_cases(std::shared_ptr<const CoefficientModel> coefficients,
+                                                     const Eigen::VectorXd& mean_shift) const {
+  const Eigen::VectorXf shift = mean_shift.cast<float>();
+  const auto found = parts_.mean.f32();
+  std::vector<float> mean(found.begin(), found.end());
+  add_modes_everywhere({shift.data(), n_modes_}, mean);
+  Parts parts = parts_;
+  parts.mean = io::Tensor::copy(std::span<const float>(mean), parts_.mean.shape());
+  parts.coefficients = std::move(coefficients);
+  return std::make_unique<PodModel>(std::move(parts));
+}
+
+std::unique_ptr<FieldModel> PodModel::without_case(std::size_t i_case) const {
+  const auto* smoother = dynamic_cast<const SmootherCoefficients*>(parts_.coefficients.get());
+  if (smoother == nullptr || smoother->n_cases() < 2) return nullptr;
+  const auto changed = smoother->without_case(i_case);
+  return of_other_cases(changed.coefficients, changed.mean_shift);
+}
+
+std::unique_ptr<FieldModel> PodModel::with_case(std::span<const double> inputs,
+                                                std::span<const float> values) const {
+  const auto* smoother = dynamic_cast<const SmootherCoefficients*>(parts_.coefficients.get());
+  if (smoother == nullptr) return nullptr;
+  const auto n = static_cast<Eigen::Index>(values.size());
+  const Eigen::VectorXf departure =
+      Eigen::VectorXf::Map(values.data(), n) - Eigen::VectorXf::Map(parts_.mean.f32().data(), n);
+  Eigen::VectorXd coefficients(static_cast<Eigen::Index>(n_modes_));
+  Eigen::VectorXf mode(n), unit(static_cast<Eigen::Index>(n_modes_));
+  for (Eigen::Index m = 0; m < unit.size(); ++m) {
+    mode.setZero();
+    unit = Eigen::VectorXf::Unit(unit.size(), m);
+    add_modes_everywhere({unit.data(), n_modes_}, {mode.data(), values.size()});
+    const double square = mode.cast<double>().squaredNorm();
+    coefficients[m] = square > 0 ? departure.cast<double>().dot(mode.cast<double>()) / square : 0.0;
+  }
+  const auto changed = smoother->with_case(inputs, coefficients);
+  return of_other_cases(changed.coefficients, changed.mean_shift);
 }
 
 void PodModel::add_modes(const float* modes, std::span<const float> weights, bool squares,

@@ -5,6 +5,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/math/kernel.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "model_parts.hpp"
 
 namespace elrom::model {
@@ -70,6 +71,61 @@ SmootherCoefficients::SmootherCoefficients(FeatureMap features, math::Standardis
     n_coefficients_ += static_cast<std::size_t>(group.weights.cols());
   }
   if (!fits) throw InputError("parts of a kernel smoother do not fit together");
+}
+
+MatrixD SmootherCoefficients::coefficients_of_cases() const {
+  MatrixD all(z_.rows(), static_cast<Eigen::Index>(n_coefficients_));
+  Eigen::Index first = 0;
+  for (const Group& group : groups_) {
+    all.middleCols(first, group.weights.cols()) =
+        group.kernel.matrix(z_, z_) * group.weights + group.kernel.noise * group.weights;
+    first += group.weights.cols();
+  }
+  return all;
+}
+
+SmootherCoefficients::Changed SmootherCoefficients::of_other_cases(MatrixD z, const MatrixD& cases) const {
+  Changed changed{nullptr, Eigen::VectorXd::Zero(cases.cols())};
+  std::vector<Group> groups;
+  Eigen::Index first = 0;
+  for (const Group& group : groups_) {
+    MatrixD own = cases.middleCols(first, group.weights.cols());
+    if (!group.kernel.antisymmetric) {
+      const Eigen::RowVectorXd mean = own.colwise().mean();
+      own.rowwise() -= mean;
+      changed.mean_shift.segment(first, mean.size()) = mean.transpose();
+    }
+    Eigen::MatrixXd covariance = group.kernel.matrix(z, z);
+    covariance.diagonal().array() += group.kernel.noise;
+    const math::Cholesky factor(covariance);
+    if (!factor.succeeded()) throw NumericalError("kernel smoother: the covariance is not positive definite");
+    groups.push_back({group.kernel, factor.solve(own), group.signal, factor.inverse_factor().cast<float>()});
+    first += group.weights.cols();
+  }
+  changed.coefficients =
+      std::make_shared<SmootherCoefficients>(features_, scaler_, std::move(z), std::move(groups));
+  return changed;
+}
+
+SmootherCoefficients::Changed SmootherCoefficients::without_case(std::size_t i_case) const {
+  const auto left_out = static_cast<Eigen::Index>(i_case);
+  check(z_.rows() > 1 && left_out < z_.rows(), "smoother: a case that it has, and others");
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index i = 0; i < z_.rows(); ++i)
+    if (i != left_out) others.push_back(i);
+  return of_other_cases(z_(others, Eigen::all), coefficients_of_cases()(others, Eigen::all));
+}
+
+SmootherCoefficients::Changed SmootherCoefficients::with_case(std::span<const double> inputs,
+                                                              const Eigen::VectorXd& coefficients) const {
+  std::vector<double> derived(features_.size());
+  features_.evaluate(inputs, derived);
+  MatrixD z(z_.rows() + 1, z_.cols());
+  z.topRows(z_.rows()) = z_;
+  scaler_.apply(derived, {z.row(z_.rows()).data(), derived.size()});
+  MatrixD cases(z.rows(), coefficients.size());
+  cases << coefficients_of_cases(), coefficients.transpose();
+  return of_other_cases(std::move(z), cases);
 }
 
 void SmootherCoefficients::predict(std::span<const double> inputs, std::span<double> coefficients,

@@ -75,6 +75,34 @@ void kill_trainings(const Workshop& shop, std::size_t n, base::Random& random, T
   }
 }
 
+/// Two versions of a model, of which one is made to answer by turns.
+void kill_promotions(const Workshop& shop, std::size_t n, base::Random& random, Tally& tally) {
+  const auto study = shop.folder / "study_versions", model = study / "model.elrom";
+  fs::remove_all(study);
+  fs::create_directories(study);
+  fs::copy_file(shop.folder / "study_whole" / "model.elrom", model);  // from before there were versions
+  const auto first = base::sha256_file(model);
+  const auto promote = [&](int number) {
+    return std::vector<std::string>{shop.program("elrom-train"), "promote", study.string(),
+                                    std::to_string(number)};
+  };
+  const double seconds = run(promote(1)).seconds;
+  fs::copy_file(study / "models" / "1.elrom", study / "models" / "2.elrom");
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i % 4 == 0) {  // a quarter of the kills hits the taking in
+      fs::remove_all(study / "models");
+      fs::remove(model);
+      fs::copy_file(shop.folder / "study_whole" / "model.elrom", model);
+    } else if (!fs::exists(study / "models" / "2.elrom")) {
+      fs::copy_file(shop.folder / "study_whole" / "model.elrom", study / "models" / "2.elrom");
+    }
+    kill_at_random(promote(i % 4 == 0 ? 1 : 1 + static_cast<int>(i % 2)), 1.5 * seconds, random);
+    tally.count(fs::exists(model) && base::sha256_file(model) == first, "versions: no whole model answers");
+    const auto again = run(promote(1));
+    tally.count(again.status == 0 && fs::is_symlink(model), "versions after a kill: " + again.output);
+  }
+}
+
 void kill_predictions(const Workshop& shop, std::size_t n, base::Random& random, Tally& tally) {
   const auto bundle = shop.folder / "study_whole" / "model.elrom";
   const auto output = shop.folder / "predictions";
@@ -244,6 +272,7 @@ Tally kills(const Workshop& workshop) {
   base::Random random(workshop.seed.derive("kills"));
   kill_imports(workshop, workshop.times(60, 6), random, tally);
   kill_trainings(workshop, workshop.times(100, 10), random, tally);
+  kill_promotions(workshop, workshop.times(40, 8), random, tally);
   kill_predictions(workshop, workshop.times(40, 6), random, tally);
   kill_collisions(workshop, workshop.times(60, 6), random, tally);
   kill_tree_searches(workshop, workshop.times(40, 4), random, tally);

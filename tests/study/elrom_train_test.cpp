@@ -71,12 +71,83 @@ TEST_F(ElromTrain, RunThenStatusThenRetrain) {
   EXPECT_THAT(out, ::testing::HasSubstr("model.elrom: linear, 2 fields, 12 cases"));
   write_small_store(store(), 5, 15);
 
-  ASSERT_EQ(run("retrain " + arguments + " --json " + (folder.path() / "retrain.json").string()), 0) << error;
+  const auto again = study() + arguments.substr(arguments.find(" -q"));
+  ASSERT_EQ(run("retrain " + again + " --json " + (folder.path() / "retrain.json").string()), 0) << error;
 
   const auto json = test::read_bytes(folder.path() / "retrain.json");
   for (const auto* key : {"seconds", "seconds_from_nothing", "error_before", "error_after", "promoted"}) {
     EXPECT_THAT(json, ::testing::HasSubstr(key));
   }
+}
+
+/// What a script meets between a good model and a bad one.
+class TrainedStudy : public ElromTrain {
+ protected:
+  TrainedStudy() {
+    write_small_store(store(), 15);
+    EXPECT_EQ(run("run " + study() + " --store " + store() + with("linear")), 0) << error;
+  }
+  static std::string with(const std::string& method) {
+    return " -q --effort quick --set method=" + method +
+           " --set peers.networks=false --set 'peers.methods=[]'";
+  }
+  [[nodiscard]] std::string model() const { return test::read_bytes(study() + "/model.elrom"); }
+};
+
+TEST_F(TrainedStudy, ARefusedModelEndsWithSevenAndDoesNotAnswer) {
+  const auto before = model();
+  write_small_store(store(), 5, 15);
+
+  EXPECT_EQ(run("retrain " + study() + with("nearest")), 7) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("not promoted: version 2"));
+  EXPECT_EQ(run("run " + study() + with("nearest")), 7) << error;
+  EXPECT_EQ(run("fit " + study() + with("nearest")), 7) << error;
+  EXPECT_EQ(model(), before);
+}
+
+TEST_F(TrainedStudy, NothingNewEndsWithEight) {
+  EXPECT_EQ(run("retrain " + study() + with("linear")), 8) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("nothing new"));
+  EXPECT_EQ(run("run " + study() + with("linear")), 0) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("version 1 answers already"));
+}
+
+TEST_F(TrainedStudy, ARefusedModelIsPromotedByHandAndRolledBack) {
+  const auto first = model();
+  write_small_store(store(), 5, 15);
+  ASSERT_EQ(run("retrain " + study() + with("nearest")), 7) << error;
+
+  EXPECT_EQ(run("promote " + study() + " 2 --date 2026-11-24"), 0) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("against the gate"));
+  EXPECT_NE(model(), first);
+  EXPECT_EQ(run("log " + study()), 0) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("version 2 answers"));
+  EXPECT_THAT(out, ::testing::HasSubstr("2026-11-24"));
+  EXPECT_EQ(run("rollback " + study()), 0) << error;
+  EXPECT_EQ(model(), first);
+  EXPECT_EQ(run("rollback " + study()), 2) << "there is none before the first";
+  EXPECT_EQ(run("promote " + study() + " 9"), 2);
+  EXPECT_THAT(error, ::testing::HasSubstr("known are: 1, 2"));
+}
+
+TEST_F(TrainedStudy, DiffTellsCasesSettingsAndErrors) {
+  write_small_store(store(), 5, 15);
+  (void)run("retrain " + study() + with("nearest"));
+
+  EXPECT_EQ(run("diff " + study() + " 1 2"), 0) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("4 cases added: train_15, train_16, train_17, train_18"));
+  EXPECT_THAT(out, ::testing::HasSubstr("method = \"linear\" -> \"nearest\""));
+  EXPECT_THAT(out, ::testing::HasSubstr("linear -> nearest"));
+}
+
+TEST_F(TrainedStudy, AStoreThatHasMovedIsAskedFor) {
+  std::filesystem::rename(store(), store() + ".moved");
+
+  EXPECT_EQ(run("retrain " + study() + with("linear")), 3);
+  EXPECT_THAT(error, ::testing::HasSubstr("--store"));
+  EXPECT_EQ(run("status " + study()), 0) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("not there any more"));
+  EXPECT_EQ(run("retrain " + study() + " --store " + store() + ".moved" + with("linear")), 8) << error;
 }
 
 }  // namespace

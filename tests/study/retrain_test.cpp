@@ -8,7 +8,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/io/file_kind.hpp"
 #include "elrom/model/bundle.hpp"
-#include "elrom/model/predictor.hpp"
+#include "elrom/study/versions.hpp"
 #include "study_fixture.hpp"
 #include "support/recording_log.hpp"
 #include "support/temporary_folder.hpp"
@@ -42,33 +42,53 @@ class Retraining : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(Retraining, ABetterBundleReplacesTheModel) {
+TEST_F(Retraining, ABetterBundleAnswersFromThenOn) {
   fit("nearest");
   grow();
 
   const auto report = retrain_with("linear");
 
-  EXPECT_TRUE(report.promoted);
-  EXPECT_LT(report.error_after, report.error_before);
+  EXPECT_TRUE(report.promoted());
+  ASSERT_TRUE(report.promotion.verdict);
+  EXPECT_LT(report.promotion.verdict->mean.after, report.promotion.verdict->mean.before);
   EXPECT_EQ(method_of_model(), "linear");
   EXPECT_EQ(report.cases_before, 12u);
   EXPECT_EQ(report.cases_after, 16u);
   EXPECT_EQ(model::BundleReader(model()).info().cases.size(), 16u);
-  EXPECT_TRUE(report.on_held_out_cases);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "candidate.elrom"));
+  EXPECT_EQ(report.promotion.verdict->judged_on, "held-out cases");
+  EXPECT_EQ(report.promotion.number, 2);
+  EXPECT_EQ(model::BundleReader(folder_ / "models/1.elrom").info().method, "nearest") << "kept";
 }
 
-TEST_F(Retraining, AWorseBundleIsThrownAway) {
+TEST_F(Retraining, AWorseBundleIsKeptAndDoesNotAnswer) {
   fit("linear");
   const auto before = test::read_bytes(model());
   grow();
 
   const auto report = retrain_with("nearest");
 
-  EXPECT_FALSE(report.promoted);
-  EXPECT_GT(report.error_after, report.error_before);
+  EXPECT_FALSE(report.promoted());
+  EXPECT_GT(report.promotion.verdict->mean.after, report.promotion.verdict->mean.before);
   EXPECT_EQ(test::read_bytes(model()), before);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "candidate.elrom"));
+  EXPECT_EQ(model::BundleReader(folder_ / "models/2.elrom").info().method, "nearest");
+  const Versions versions(folder_.path());
+  EXPECT_EQ(versions.current(), 1);
+  EXPECT_FALSE(versions.log().back().promoted);
+  EXPECT_EQ(versions.log().back().by, "retrain");
+}
+
+TEST_F(Retraining, ARunDoesNotBringARefusedBundleIn) {
+  fit("linear");
+  const auto before = test::read_bytes(model());
+  grow();
+  (void)retrain_with("nearest");
+
+  Study study(folder_.path(), settings("nearest"), {}, silent_log(), {});
+  study.run();
+
+  EXPECT_EQ(study.promotion().kind, Promotion::Kind::refused);
+  EXPECT_EQ(study.promotion().number, 2) << "the same bytes: no further version";
+  EXPECT_EQ(test::read_bytes(model()), before);
 }
 
 TEST_F(Retraining, JudgingCasesThatWereTrainedOnIsTold) {
@@ -89,55 +109,43 @@ TEST_F(Retraining, TrainingOnCasesThatWereHeldOutIsTold) {
   EXPECT_THAT(log.text(), ::testing::HasSubstr("2 more cases were held out so far and are trained on now"));
 }
 
-TEST_F(Retraining, ABundleThatIsAsGoodIsTaken) {
+TEST_F(Retraining, WithoutNewCasesThereIsNothingToDo) {
   fit("linear");
+  const auto before = test::read_bytes(model());
 
   const auto report = retrain_with("linear");
 
-  EXPECT_EQ(report.error_after, report.error_before);
-  EXPECT_TRUE(report.promoted);
+  EXPECT_TRUE(report.nothing_new);
+  EXPECT_FALSE(report.promoted());
+  EXPECT_EQ(test::read_bytes(model()), before);
+  EXPECT_EQ(Versions(folder_.path()).log().size(), 1u);
+  ASSERT_TRUE(report.promotion.verdict);
+  EXPECT_EQ(report.promotion.verdict->mean.before, report.promotion.verdict->mean.after);
 }
 
-TEST_F(Retraining, HeldOutErrorIsTheNrmseOverHeldOutCasesAgainstTheMeanOfTheOthers) {
+TEST_F(Retraining, OtherSettingsAreSomethingNew) {
   fit("linear");
-  const auto store = field::SnapshotStore::open(store_path());
-  const auto rows = store.find("load_*"), others = store.find("train_*");
-  const model::Predictor predictor(model());
-  const auto inputs = store.inputs(rows);
-  const auto n_cells = static_cast<Eigen::Index>(store.mesh().n_cells());
-  double expected = 0;
-  for (std::size_t f = 0; f < predictor.fields().size(); ++f) {
-    const MatrixD truth = store.read(predictor.fields()[f].name, rows).cast<double>();
-    const Eigen::RowVectorXd mean =
-        store.read(predictor.fields()[f].name, others).cast<double>().colwise().mean();
-    MatrixD predicted(truth.rows(), truth.cols());
-    for (Eigen::Index i = 0; i < truth.rows(); ++i) {
-      std::vector<float> values(predictor.size());
-      model::Predictor::Scratch scratch;
-      predictor.predict({inputs.row(i).data(), 3}, values, {}, scratch);
-      for (Eigen::Index c = 0; c < n_cells; ++c)
-        predicted(i, c) = values[f * static_cast<std::size_t>(n_cells) + static_cast<std::size_t>(c)];
-    }
-    expected += (predicted - truth).norm() / (truth.rowwise() - mean).norm() / 2;  // of two fields
-  }
 
-  EXPECT_NEAR(held_out_error(model(), store, rows), expected, 1e-6 * expected);
-  EXPECT_GT(expected, 0);
-  EXPECT_LT(expected, 1);
+  EXPECT_FALSE(retrain_with("nearest").nothing_new);
 }
 
-TEST_F(Retraining, WithoutHeldOutCasesTheBundlesCrossValidationJudges) {
-  fit("nearest", false);
-  const auto accuracy = nlohmann::json::parse(model::BundleReader(model()).info().accuracy_json);
-  const double expected =
-      (accuracy["pressure"]["nrmse"].get<double>() + accuracy["gas_velocity_z"]["nrmse"].get<double>()) / 2;
+TEST_F(Retraining, TheNewBundleTellsWhereItComesFrom) {
+  fit("linear");
+  const auto parent = model::BundleReader(model()).digest();
+  grow();
+  auto dated = settings("linear");
+  dated.date = "2026-11-24";
 
-  const auto report = retrain_with("linear", false);
+  (void)retrain(folder_.path(), dated, {}, silent_log(), {});
 
-  EXPECT_FALSE(report.on_held_out_cases);
-  EXPECT_DOUBLE_EQ(report.error_before, expected);
-  EXPECT_TRUE(report.promoted);
-  EXPECT_EQ(method_of_model(), "linear");
+  const auto info = model::BundleReader(folder_ / "models/2.elrom").info();
+  EXPECT_EQ(info.provenance.at("parent"), parent);
+  EXPECT_EQ(info.provenance.at("date"), "2026-11-24");
+  ASSERT_EQ(info.case_digests.size(), 16u);
+  const auto store = field::SnapshotStore::open(store_path());
+  const std::array<std::size_t, 1> first{store.find(info.cases.front()).front()};
+  EXPECT_EQ(info.case_digests.front(), store.digest(first));
+  EXPECT_THAT(info.settings, ::testing::HasSubstr("method = \"linear\""));
 }
 
 TEST_F(Retraining, AStudyWithoutAModelHasNothingToRetrain) {
@@ -170,22 +178,25 @@ TEST_F(Retraining, TheRecordedTimeOfAFullRunIsReported) {
 }
 
 TEST(RetrainReport, IsWrittenAsDocumented) {
-  const RetrainReport report{.cases_before = 3,
-                             .cases_after = 5,
-                             .seconds = 2.5,
-                             .seconds_from_nothing = {},
-                             .error_before = 0.25,
-                             .error_after = 0.125,
-                             .on_held_out_cases = true,
-                             .promoted = true};
+  RetrainReport report{
+      .cases_before = 3, .cases_after = 5, .seconds = 2.5, .seconds_from_nothing = {}, .nothing_new = false};
+  report.promotion.kind = Promotion::Kind::promoted;
+  report.promotion.number = 7;
+  report.promotion.verdict = GateVerdict();
+  report.promotion.verdict->judged_on = "held-out cases";
+  report.promotion.verdict->mean.before = 0.25;
+  report.promotion.verdict->mean.after = 0.125;
 
   auto json = nlohmann::json::parse(to_json(report));
 
-  EXPECT_EQ(io::check_json_kind(json, io::kinds::retrain, "report").minor, 0);
+  EXPECT_EQ(io::check_json_kind(json, io::kinds::retrain, "report").minor, 1);
+  EXPECT_EQ(json["verdict"]["before"], 0.25);
   json.erase("program");
-  EXPECT_EQ(json, nlohmann::json::parse(R"({"kind": "elrom-retrain", "format": [1, 0], "cases_before": 3,
+  json.erase("verdict");
+  EXPECT_EQ(json, nlohmann::json::parse(R"({"kind": "elrom-retrain", "format": [1, 1], "cases_before": 3,
       "cases_after": 5, "seconds": 2.5, "seconds_from_nothing": null, "error_before": 0.25, "error_after": 0.125,
-      "judged_on": "held-out cases", "promoted": true})"));
+      "judged_on": "held-out cases", "promoted": true, "nothing_new": false, "version": 7,
+      "case_effects": null})"));
 }
 
 }  // namespace

@@ -119,6 +119,10 @@ std::map<std::string, Effect> effects() {
           {"seed", {"2", all}},
           {"threads", {"1", none}},
           {"device", {"cuda", none}},  // reaches stages by the trainer's name
+          {"date", {"\"2026-11-24\"", none}},
+          {"train.exclude", {"[\"train_0\"]", all}},
+          {"gate.tolerance", {"0.02", none}},
+          {"gate.deviations", {"2", none}},
           {"fields.names", {"[\"gas_velocity_z\"]", all}},
           {"split.held_out", {"[\"load_*\", \"train_0\"]", all}},
           {"split.by", {"record", from_records}},

@@ -11,9 +11,11 @@
 #include "elrom/model/bundle.hpp"
 #include "elrom/model/predictor.hpp"
 #include "elrom/study/held_out.hpp"
+#include "elrom/study/versions.hpp"
 #include "study_fixture.hpp"
 #include "support/recording_log.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/throws.hpp"
 
 namespace elrom::study {
 namespace {
@@ -62,8 +64,8 @@ class SmallStudy : public ::testing::Test {
   }
   /// All that a run could take up again.
   void forget() const {
-    for (const auto* name :
-         {"stages", "search.sqlite", "search.sqlite-wal", "search.sqlite-shm", "model.elrom", "peers"})
+    for (const auto* name : {"stages", "search.sqlite", "search.sqlite-wal", "search.sqlite-shm",
+                             "model.elrom", "models", "peers"})
       std::filesystem::remove_all(folder.path() / name);
   }
   std::string bundle_digest() const { return base::sha256_file(folder.path() / "model.elrom"); }
@@ -209,6 +211,114 @@ TEST_F(SmallStudy, SecondRunRedoesNothingAndWritesTheSameBytes) {
   }
 }
 
+TEST_F(SmallStudy, ASecondRunIsNoNewVersion) {
+  run("linear");
+  Study study(folder.path(), settings("linear"), {.trainer = trainer}, silent_log(), {});
+
+  study.run();
+
+  EXPECT_EQ(study.promotion().kind, Promotion::Kind::unchanged);
+  EXPECT_EQ(study.promotion().number, 1);
+  EXPECT_EQ(Versions(folder.path()).numbers().size(), 1u);
+}
+
+TEST_F(SmallStudy, ADateAloneIsNoNewVersion) {
+  run("linear");
+  auto dated = settings("linear");
+  dated.date = "2026-11-24";
+  Study study(folder.path(), dated, {.trainer = trainer}, silent_log(), {});
+
+  study.run();
+
+  EXPECT_EQ(study.promotion().kind, Promotion::Kind::unchanged);
+}
+
+TEST_F(SmallStudy, ARefusedModelLeavesThePeersAsTheyAre) {
+  run("linear");
+  const auto peer = folder.path() / "peers/nearest.elrom";
+  const auto before = test::read_bytes(peer);
+  write_small_store(folder.path() / "snapshots.h5", 5, 20);
+  auto worse = settings("nearest");
+  worse.peers.methods = {"linear"};
+  Study study(folder.path(), worse, {.trainer = trainer}, silent_log(), {});
+
+  study.run();
+
+  EXPECT_EQ(study.promotion().kind, Promotion::Kind::refused);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "peers/linear.elrom"));
+  EXPECT_EQ(test::read_bytes(peer), before);
+}
+
+TEST_F(SmallStudy, ADamagedModelIsReplacedWithoutBeingCompared) {
+  run("linear");
+  std::filesystem::resize_file(folder.path() / "models/1.elrom", 1000);
+  test::RecordingLog log;
+  Study study(folder.path(), settings("linear"), {.trainer = trainer}, log, {});
+
+  study.run();
+
+  EXPECT_EQ(study.promotion().number, 2);
+  EXPECT_THAT(log.text(), HasSubstr("cannot be read"));
+  EXPECT_EQ(model::BundleReader(folder.path() / "model.elrom").info().method, "linear");
+}
+
+TEST_F(SmallStudy, AnExcludedCaseIsNeitherTrainedOnNorHeldOut) {
+  auto without = settings("linear");
+  without.train.exclude = {"train_3", "load_4"};
+
+  Study(folder.path(), without, {.trainer = trainer}, silent_log(), {}).run();
+
+  const auto split = read_split(folder.path() / "split.json");
+  EXPECT_THAT(split.excluded, ::testing::ElementsAre("train_3", "load_4"));
+  EXPECT_EQ(split.held_out.size(), 3u);
+  EXPECT_EQ(split.train.size() + split.validation.size() + split.test.size(), 15u);
+  EXPECT_THAT(model::BundleReader(folder.path() / "model.elrom").info().cases,
+              ::testing::Not(::testing::Contains("train_3")));
+}
+
+TEST_F(SmallStudy, APatternThatMatchesNoCaseIsRefusedWithTheNearest) {
+  auto held_out = settings("linear"), excluded = settings("linear");
+  held_out.split.held_out = {"lod_4"};
+  excluded.train.exclude = {"trian_3"};
+  const auto make = [&](const Settings& used) {
+    return Study(folder.path(), used, {.trainer = trainer}, silent_log(), {}).held_out().size();
+  };
+
+  EXPECT_ERROR(UsageError, "did you mean 'load_4'", make(held_out));
+  EXPECT_ERROR(UsageError, "train.exclude", make(excluded));
+}
+
+TEST_F(SmallStudy, AFurnacesPatternThatMatchesNoCaseIsTold) {
+  auto furnace = small_furnace();
+  furnace.held_out = {"load_*", "rep*"};
+  write_small_store(folder.path() / "snapshots.h5", 0, 0, furnace);
+  test::RecordingLog log;
+
+  const Study study(folder.path(), settings("linear"), {.trainer = trainer}, log, {});
+
+  EXPECT_THAT(log.text(), HasSubstr("no case matches 'rep*'"));
+}
+
+TEST_F(SmallStudy, AStoreThatIsGoneIsTold) {
+  std::filesystem::remove(folder.path() / "snapshots.h5");
+
+  EXPECT_ERROR(InputError, "--store",
+               Study(folder.path(), settings("linear"), {}, silent_log(), {}).held_out().size());
+}
+
+TEST_F(SmallStudy, TheStoreOfTheLastRunIsRemembered) {
+  const auto study = folder.path() / "study", store = folder.path() / "snapshots.h5";
+  auto given = settings("linear");
+  given.store = store.string();
+  Study(study, given, {.trainer = trainer}, silent_log(), {}).fit();
+
+  EXPECT_EQ(study_settings(study).store, "../snapshots.h5") << "moves with the study";
+  EXPECT_EQ(study_settings(study, {"store=other.h5"}).store, "other.h5");
+  base::write_text(study / "study.toml", "store = \"own.h5\"\n");
+  EXPECT_EQ(study_settings(study).store, "own.h5");
+  EXPECT_EQ(study_settings(folder.path() / "new").store, "snapshots.h5");
+}
+
 TEST_F(SmallStudy, RunKilledInTheMiddleEndsWithTheSameBundle) {
   run("networks");
   const auto expected = bundle_digest();
@@ -243,7 +353,7 @@ TEST_F(SmallStudy, DamagedStageIsComputedAgain) {
   for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "stages")) {
     std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
   }
-  std::filesystem::remove(folder.path() / "model.elrom");
+  std::filesystem::remove_all(folder.path() / "models");
 
   run("linear");
 

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
 #include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/study/retrain.hpp"
 
@@ -15,14 +16,18 @@ struct RetrainArguments {
   bool compare = false, small = false;
 };
 
-int print(const RetrainArguments& arguments, const study::RetrainReport& report) {
+int print(const RetrainArguments& arguments, const study::Settings& settings,
+          const study::RetrainReport& report) {
   if (!arguments.json.empty()) base::write_text(arguments.json, study::to_json(report));
-  fmt::print("{} -> {} cases in {}; error {} -> {} ({}); {}\n", report.cases_before, report.cases_after,
-             base::duration(report.seconds), base::rounded(report.error_before),
-             base::rounded(report.error_after),
-             report.on_held_out_cases ? "held-out cases" : "cross-validation",
-             report.promoted ? "promoted" : "not promoted: it would be worse");
-  return 0;
+  if (report.nothing_new) {
+    fmt::print("nothing new: version {} was trained on these {} cases with these settings\n",
+               report.promotion.number, report.cases_before);
+    return static_cast<int>(ExitStatus::nothing_new);
+  }
+  fmt::print("{} -> {} cases in {}\n", report.cases_before, report.cases_after,
+             base::duration(report.seconds));
+  if (report.effects) fmt::print("{}", in_words(*report.effects, settings.gate.tolerance / 2));
+  return tell(report.promotion, arguments.study.folder);
 }
 
 int run_retrain(const RetrainArguments& arguments) {
@@ -32,17 +37,19 @@ int run_retrain(const RetrainArguments& arguments) {
     with.settings.emplace_back("peers.networks=false");
   }
   return in_study(with, [&](const study::Settings& settings, const study::Toolbox& tools, Log& log) {
-    return print(arguments, study::retrain(with.folder, settings, tools, log, base::interrupt_token(),
-                                           arguments.compare));
+    return print(
+        arguments, settings,
+        study::retrain(with.folder, settings, tools, log, base::interrupt_token(), arguments.compare));
   });
 }
 
 }  // namespace
 
 void add_retrain(CLI::App& app, Work& run) {
-  auto* command = app.add_subcommand("retrain",
-                                     R"(take new cases of the store into an existing study;
-replaces model.elrom only when the new model is not worse)");
+  auto* command = app.add_subcommand(
+      "retrain",
+      R"(take new cases of the store into an existing study; the new model answers only when no field is
+worse beyond scatter. Exit status: 7 it was refused, 8 there is nothing new)");
   auto arguments = std::make_shared<RetrainArguments>();
   arguments->study.add_to(*command);
   command->add_option("--json", arguments->json, "write the figures to this file");

@@ -30,7 +30,7 @@ int train(const StudyArguments& arguments, bool with_peers, const study::Setting
   print_outcomes(with_peers ? study.run() : study.fit());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   fmt::print("{} in {}\n", (arguments.folder / "model.elrom").string(), base::duration(seconds));
-  return 0;
+  return tell(study.promotion(), arguments.folder);
 }
 
 int train_within(double seconds, const StudyArguments& arguments, bool with_peers,
@@ -81,8 +81,10 @@ void add_training(CLI::App& app, Work& run, const std::string& name, const std::
 }  // namespace
 
 void add_run(CLI::App& app, Work& run) {
-  add_training(app, run, "run",
-               "every stage: split, screen, band, search, fit, peers; writes model.elrom and peers/", true);
+  add_training(
+      app, run, "run",
+      "every stage: split, screen, band, search, fit, peers; writes model.elrom and peers/.\nA study that has a model gets the new one only through the gate, as with retrain",
+      true);
 }
 
 void add_fit(CLI::App& app, Work& run) {

@@ -7,18 +7,28 @@
 #include "elrom/base/text.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/study/held_out.hpp"
+#include "elrom/study/settings.hpp"
 #include "elrom/study/timing.hpp"
+#include "elrom/study/versions.hpp"
 
 namespace elrom::programs {
 namespace {
 
 using std::filesystem::path;
 
+void print_store(const path& folder) {
+  if (!std::filesystem::exists(folder / "resolved.toml")) return;
+  const auto store = folder / study::study_settings(folder).store;
+  fmt::print("store      {}{}\n", store.lexically_normal().string(),
+             std::filesystem::exists(store) ? "" : " (not there any more; --store names another)");
+}
+
 void print_split(const path& folder) {
   if (!std::filesystem::exists(folder / "split.json")) return;
   const auto split = study::read_split(folder / "split.json");
-  fmt::print("cases      {} train, {} validation, {} test, {} held out (by {})\n", split.train.size(),
-             split.validation.size(), split.test.size(), split.held_out.size(), split.by);
+  fmt::print("cases      {} train, {} validation, {} test, {} held out, {} excluded (by {})\n",
+             split.train.size(), split.validation.size(), split.test.size(), split.held_out.size(),
+             split.excluded.size(), split.by);
 }
 
 void print_stages(const path& folder) {
@@ -54,6 +64,9 @@ void print_bundle(const path& file) {
 
 void print_bundles(const path& folder) {
   if (std::filesystem::exists(folder / "model.elrom")) print_bundle(folder / "model.elrom");
+  const study::Versions versions(folder);
+  if (const auto current = versions.current())
+    fmt::print("versions   {}, of which {} answers (elrom-train log)\n", versions.numbers().size(), *current);
   if (!std::filesystem::is_directory(folder / "peers")) return;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "peers")) {
     if (entry.path().extension() == ".elrom") print_bundle(entry.path());
@@ -77,6 +90,7 @@ void add_status(CLI::App& app, Work& run) {
     run = [folder] {
       if (!std::filesystem::is_directory(*folder))
         throw InputError({.what = "no such folder", .where = folder->string()});
+      print_store(*folder);
       print_split(*folder);
       print_stages(*folder);
       print_trials(*folder);

@@ -17,7 +17,7 @@ namespace elrom::programs {
 /// What every subcommand that works in a study takes.
 struct StudyArguments {
   std::filesystem::path folder, store;
-  std::string effort, device;
+  std::string effort, device, date;
   int threads = -1;
   std::vector<std::string> settings;  ///< "key=value"
   bool quiet = false;
@@ -39,6 +39,9 @@ using StudyWork = std::function<int(const study::Settings& settings, const study
 [[nodiscard]] std::shared_ptr<const networks::Trainer> make_network_trainer(const std::string& device);
 [[nodiscard]] std::shared_ptr<const surrogate::TreeTrainer> make_tree_trainer();
 
+/// Says what became of the model. @return the exit status that tells it to scripts
+[[nodiscard]] int tell(const study::Promotion& promotion, const std::filesystem::path& folder);
+
 /// A subcommand sets `run` when it is chosen; its value is the exit status.
 using Work = std::function<int()>;
 void add_run(CLI::App& app, Work& run);
@@ -47,6 +50,7 @@ void add_search(CLI::App& app, Work& run);
 void add_fit(CLI::App& app, Work& run);
 void add_retrain(CLI::App& app, Work& run);
 void add_status(CLI::App& app, Work& run);
+void add_versions(CLI::App& app, Work& run);  ///< log, diff, promote, rollback
 void add_collisions(CLI::App& app, Work& run);
 
 }  // namespace elrom::programs

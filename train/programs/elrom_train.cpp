@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
     elrom::programs::add_fit(app, run);
     elrom::programs::add_retrain(app, run);
     elrom::programs::add_status(app, run);
+    elrom::programs::add_versions(app, run);
     elrom::programs::add_collisions(app, run);
     try {
       app.parse(argc, argv);

@@ -34,42 +34,13 @@ std::vector<std::size_t> rows_of(const field::SnapshotStore& store, const std::v
   return rows;
 }
 
-// Runs of the same boundary conditions: each set holds one scored case and its repeats, or repeats alone.
-std::vector<std::vector<std::size_t>> repeat_sets(const MatrixD& inputs, const std::vector<bool>& is_repeat) {
-  std::vector<std::vector<std::size_t>> sets;
-  std::vector<bool> taken(is_repeat.size(), false);
-  for (std::size_t i = 0; i < is_repeat.size(); ++i) {
-    if (taken[i]) continue;
-    std::vector<std::size_t> set{i};
-    bool any_repeat = is_repeat[i];
-    for (std::size_t j = i + 1; j < is_repeat.size(); ++j) {
-      const auto a = inputs.row(static_cast<Eigen::Index>(i)), b = inputs.row(static_cast<Eigen::Index>(j));
-      if (taken[j] || !((a - b).cwiseAbs().array() <= 1e-9 * a.cwiseAbs().array()).all()) continue;
-      taken[j] = true;
-      any_repeat = any_repeat || is_repeat[j];
-      set.push_back(j);
-    }
-    if (any_repeat && set.size() >= 2) sets.push_back(std::move(set));
-  }
-  return sets;
-}
-
 HeldOutCases hold_out_cases(const field::SnapshotStore& store, const StudyFiles& study) {
-  const auto rows = rows_of(store, study.held_out);
-  std::vector<bool> is_repeat;
-  HeldOutCases cases;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    is_repeat.push_back(store.furnace() && store.furnace()->is_repeat(study.held_out[i]));
-    if (!is_repeat.back()) cases.scored.push_back(rows[i]);
-  }
+  const auto judged = study::judged_cases(store, rows_of(store, study.held_out));
+  HeldOutCases cases{.building = {}, .scored = judged.scored, .repeats = judged.repeats, .inputs = {}};
   if (cases.scored.empty())
     throw UsageError({.what = "no held-out case to score",
                       .where = study.directory.string(),
                       .advice = "name some in study.toml: [split] held_out = [\"load_*\"]"});
-  for (const auto& set : repeat_sets(store.inputs(rows), is_repeat)) {
-    cases.repeats.emplace_back();
-    for (const std::size_t i : set) cases.repeats.back().push_back(rows[i]);
-  }
   cases.building = rows_of(store, study.building);
   cases.inputs = store.inputs(cases.scored);
   return cases;

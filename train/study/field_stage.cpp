@@ -86,6 +86,14 @@ MatrixF residuals_of_new_cases(const ModelStage& stage, const std::vector<const 
   return residuals;
 }
 
+/// Of each case, for the gate between this model and a later one.
+Json squared_errors(const MatrixF& residuals) {
+  Json errors = Json::array();
+  for (Eigen::Index i = 0; i < residuals.rows(); ++i)
+    errors.push_back(residuals.row(i).cast<double>().squaredNorm());
+  return errors;
+}
+
 Json accuracy_of(const ModelStage& stage, const methods::AutoFit& fit) {
   Json candidates = Json::array();
   for (const auto& candidate : fit.candidates) {
@@ -120,10 +128,12 @@ io::TensorFile ModelStage::compute(const methods::FitContext& running) const {
                                                       {.n_folds = n_folds, .band_edges = band_edges}, context)
                                   : fit_alone(*this, *all.front(), rows, context);
   io::TensorFile file;
+  auto accuracy = accuracy_of(*this, fit);
   if (n_folds > 0) {
     try {
-      model::Uncertainty(residuals_of_new_cases(*this, all, fit, rows, context), data->cases->mesh.n_columns,
-                         data->cases->inputs)
+      auto residuals = residuals_of_new_cases(*this, all, fit, rows, context);
+      accuracy["squared_errors"] = squared_errors(residuals);
+      model::Uncertainty(std::move(residuals), data->cases->mesh.n_columns, data->cases->inputs)
           .save(file, "uncertainty");
       file.set_text("has_uncertainty", "yes");
     } catch (const NumericalError& error) {
@@ -132,7 +142,7 @@ io::TensorFile ModelStage::compute(const methods::FitContext& running) const {
     }
   }
   fit.model->save(file, "model");
-  file.set_text("accuracy", accuracy_of(*this, fit).dump());
+  file.set_text("accuracy", accuracy.dump());
   clock.reset();
   file.set_text("seconds", base::number(cost.seconds));
   Json costs;

@@ -24,7 +24,8 @@ struct FieldStage {
   /// What each method that took part cost then: wall and processor seconds of its fit, its cross-validation
   /// and its share of the intervals. Empty in files of programs that did not keep it.
   [[nodiscard]] std::map<std::string, MethodCost> costs() const;
-  /// {"method", "nrmse", "nrmse_by_band", "candidates": [{"name", "nrmse", "weight"}]}, for the bundle.
+  /// {"method", "nrmse", "nrmse_by_band", "candidates": [{"name", "nrmse", "weight"}], "squared_errors"}, for
+  /// the bundle; the last by case, summed over cells, each case by a model that did not see it.
   [[nodiscard]] const std::string& accuracy() const { return file.text("accuracy"); }
 };
 

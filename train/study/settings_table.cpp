@@ -44,6 +44,9 @@ io::SettingsTable<Settings> make_table() {
   t.whole(
       "threads", "threads of every stage; 0: all", [](auto& s) -> auto& { return s.threads; }, 0, 4096);
   t.word("device", "where LibTorch trains", [](auto& s) -> auto& { return s.device; }, {"cpu", "cuda"});
+  t.word(
+      "date", "kept in the bundle as it stands, so that bytes repeat; empty: none",
+      [](auto& s) -> auto& { return s.date; });
   t.words(
       "fields.names", "fields to build; empty: all of the store", [](auto& s) -> auto& { return s.fields; });
   t.words(
@@ -54,6 +57,15 @@ io::SettingsTable<Settings> make_table() {
   t.numbers(
       "split.fractions", "train, validation, test", [](auto& s) -> auto& { return s.split.fractions; },
       are_fractions, "three fractions that add up to 1, train and validation above 0");
+  t.words(
+      "train.exclude", "cases neither trained on nor held out: names or patterns",
+      [](auto& s) -> auto& { return s.train.exclude; });
+  t.real(
+      "gate.tolerance", "NRMSE that a field may lose when a new model takes the present one's place",
+      [](auto& s) -> auto& { return s.gate.tolerance; }, 0, 1);
+  t.real(
+      "gate.deviations", "standard deviations of scatter from which on a difference is real",
+      [](auto& s) -> auto& { return s.gate.deviations; }, 0, 100);
   t.flag(
       "symmetry.enabled", "use the declared mirror images",
       [](auto& s) -> auto& { return s.symmetry.enabled; });

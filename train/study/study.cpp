@@ -15,6 +15,7 @@
 #include "elrom/math/statistics.hpp"
 #include "elrom/networks/split.hpp"
 #include "elrom/study/held_out.hpp"
+#include "elrom/study/versions.hpp"
 #include "field_stage.hpp"
 #include "method_set.hpp"
 #include "study_bundle.hpp"
@@ -35,8 +36,43 @@ std::filesystem::path made(const std::filesystem::path& folder) {
 }
 
 std::filesystem::path store_path(const std::filesystem::path& folder, const Settings& settings) {
-  const std::filesystem::path store(settings.store);
-  return store.is_absolute() ? store : folder / store;
+  const auto store = folder / settings.store;  // which an absolute path replaces
+  if (!std::filesystem::exists(store))
+    throw InputError({.what = "no snapshot store",
+                      .where = store.string(),
+                      .advice = "name it with --store (the study remembers where it was), or make one with "
+                                "elrom-data import"});
+  return store;
+}
+
+/// For resolved.toml: a store beside or below the study moves with it.
+std::string remembered(const std::filesystem::path& folder, const std::string& store) {
+  const auto near = std::filesystem::path(store).lexically_normal().lexically_proximate(
+      std::filesystem::weakly_canonical(folder));
+  const bool is_far = near.is_absolute() || near.string().starts_with("../..");
+  return is_far || !std::filesystem::path(store).is_absolute() ? store : near.string();
+}
+
+/// Empty for a bundle that cannot be read to its end.
+std::string digest_if_whole(const std::filesystem::path& bundle) {
+  try {
+    const model::BundleReader reader(bundle);
+    reader.file().verify_all();
+    return reader.digest();
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// As a bundle tells them: without what says how and where it runs, or when a model is taken.
+std::string settings_text(Settings settings) {
+  const Settings defaults;
+  settings.threads = defaults.threads;
+  settings.device = defaults.device;
+  settings.store = defaults.store;
+  settings.date = defaults.date;
+  settings.gate = defaults.gate;
+  return to_toml(settings);
 }
 
 }  // namespace
@@ -60,13 +96,17 @@ struct Study::Impl {
         methods(settings, std::move(toolbox), &cache, &trials) {
     plain_cases = cases;
     plain_cases.mirrors.clear();  // peers as a user would run them: without mirror images
-    base::write_text(folder / "resolved.toml", to_toml(settings));
+    auto resolved = settings;
+    resolved.store = remembered(folder, settings.store);
+    base::write_text(folder / "resolved.toml", to_toml(resolved));
     write_names();
+    Versions(folder).settle();
   }
 
   HeldOut held_out_rows() {
     settings.split.held_out = held_out_patterns(store, settings, log);
-    return hold_out(store, *settings.split.held_out);
+    expect_matches(store, settings.train.exclude, "train.exclude");
+    return hold_out(store, *settings.split.held_out, settings.train.exclude);
   }
 
   [[nodiscard]] base::Seed seed() const { return base::Seed(static_cast<std::uint64_t>(settings.seed)); }
@@ -75,7 +115,8 @@ struct Study::Impl {
   }
 
   void write_names() const {
-    SplitNames split{.by = settings.split.by, .train = {}, .validation = {}, .test = {}, .held_out = {}};
+    SplitNames split{
+        .by = settings.split.by, .train = {}, .validation = {}, .test = {}, .held_out = {}, .excluded = {}};
     const auto parts = networks::split_cases(cases.loads, settings.split.fractions, seed());
     for (std::size_t i = 0; i < parts.size(); ++i) {
       auto& names = parts[i] == networks::Part::train        ? split.train
@@ -84,6 +125,7 @@ struct Study::Impl {
       names.push_back(cases.names[i]);
     }
     for (const auto row : rows.held_out) split.held_out.push_back(store.cases()[row].inputs.name);
+    for (const auto row : rows.excluded) split.excluded.push_back(store.cases()[row].inputs.name);
     write_split(folder / "split.json", split);
   }
 
@@ -173,7 +215,12 @@ struct Study::Impl {
       log.info(fmt::format("{}: {}, cross-validated NRMSE {}", field, outcomes.back().method,
                            base::rounded(main.nrmse(), 3)));
     });
-    for (const auto& [name, of_method] : stages) write_bundle(name, of_method, model_path);
+    if (model_path.empty())
+      promote(stages.at(settings.method), with_peers ? "run" : retraining ? "retrain" : "fit");
+    else
+      write_study_bundle(model_path, bundle_of(settings.method), lineage(), stages.at(settings.method));
+    for (const auto& [name, of_method] : stages)
+      if (name != settings.method && promotion.kind != Promotion::Kind::refused) write_peer(name, of_method);
     FitCosts costs;
     for (const auto& [name, of_method] : stages) {
       for (const auto& [field, stage] : of_method) {
@@ -212,19 +259,68 @@ struct Study::Impl {
     return base::digest_of_members(name, keys);
   }
 
-  void write_bundle(const std::string& name, const std::map<std::string, FieldStage>& stages,
-                    const std::filesystem::path& model_path) {
-    const bool is_main = name == settings.method;
-    const auto path = is_main ? model_path : made(folder / "peers") / (name + ".elrom");
-    const StudyBundle bundle{.method = name,
-                             .fields = fields,
-                             .cases = plain_cases,
-                             .furnace = store.furnace(),
-                             .store_digest = store.digest(rows.building),
-                             .settings_digest = settings_digest(name)};
+  StudyBundle bundle_of(const std::string& name) {
+    return {.method = name,
+            .fields = fields,
+            .cases = plain_cases,
+            .furnace = store.furnace(),
+            .store_digest = store.digest(rows.building),
+            .settings_digest = settings_digest(name)};
+  }
+
+  [[nodiscard]] Lineage lineage() const {
+    Lineage lineage{
+        .case_digests = {}, .settings = settings_text(settings), .date = settings.date, .parent = {}};
+    for (const auto row : rows.building) lineage.case_digests.push_back(store.digest({&row, 1}));
+    return lineage;
+  }
+
+  void write_peer(const std::string& name, const FieldStages& stages) {
     const auto begin = Clock::now();
-    write_study_bundle(path, bundle, stages);
+    write_study_bundle(made(folder / "peers") / (name + ".elrom"), bundle_of(name), lineage(), stages);
     cache.clock().add("bundle", std::chrono::duration<double>(Clock::now() - begin).count(), false);
+  }
+
+  /// A version of this content that a run before this one left, or a new one.
+  int version_of(const Versions& versions, const FieldStages& stages) {
+    const auto begin = Clock::now();
+    const auto bundle = bundle_of(settings.method);
+    const auto content = content_of(bundle, stages);
+    for (const int number : versions.numbers())
+      if (holds_content(versions.file(number), content)) return number;
+    const int number = versions.next();
+    auto from = lineage();
+    if (const auto current = versions.current()) from.parent = digest_if_whole(versions.file(*current));
+    made(folder / "models");
+    write_study_bundle(versions.file(number), bundle, from, stages);
+    cache.clock().add("bundle", std::chrono::duration<double>(Clock::now() - begin).count(), false);
+    return number;
+  }
+
+  /// The model becomes a version, and where the gate lets it pass, or there is none yet, the present one.
+  void promote(const FieldStages& stages, const std::string& by) {
+    Versions versions(folder);
+    const auto current = versions.current();
+    promotion = {.kind = Promotion::Kind::first, .number = version_of(versions, stages)};
+    if (current == promotion.number) {
+      promotion.kind = Promotion::Kind::unchanged;
+      return;
+    }
+    if (current && digest_if_whole(versions.file(*current)).empty()) {
+      log.warning("the present model cannot be read: the new one takes its place without being compared");
+    } else if (current) {
+      promotion.verdict = judge(versions.file(*current), versions.file(promotion.number),
+                                {store, rows.building, rows.held_out}, settings.gate, settings.n_threads());
+      if (!promotion.verdict)
+        log.warning("the present model is of another mesh or other boundary conditions: nothing to compare");
+      const bool passed = !promotion.verdict || promotion.verdict->passed;
+      promotion.kind = passed ? Promotion::Kind::promoted : Promotion::Kind::refused;
+    }
+    versions.record({.number = promotion.number,
+                     .by = by,
+                     .promoted = promotion.kind != Promotion::Kind::refused,
+                     .date = settings.date,
+                     .verdict = promotion.verdict ? to_json(*promotion.verdict) : ""});
   }
 
   std::filesystem::path folder;
@@ -234,7 +330,9 @@ struct Study::Impl {
   base::FileLock lock;
   field::SnapshotStore store;
   HeldOut rows;
-  std::vector<std::size_t> earlier_rows;  // of `cases`; retraining only, as is
+  Promotion promotion;
+  bool retraining = false;
+  std::vector<std::size_t> earlier_rows;  // of `cases`; retraining only, as is `earlier`
   std::optional<EarlierModel> earlier;
   field::CaseSet cases, plain_cases;
   std::vector<field::FieldInfo> fields;
@@ -252,17 +350,30 @@ Study::~Study() = default;
 std::vector<FieldOutcome> Study::screen() { return impl_->plan_networks(false); }
 std::vector<FieldOutcome> Study::search() { return impl_->plan_networks(true); }
 std::vector<FieldOutcome> Study::fit(const std::filesystem::path& bundle) {
-  return impl_->fit(false, bundle.empty() ? impl_->folder / "model.elrom" : bundle);
+  return impl_->fit(false, bundle);
 }
-std::vector<FieldOutcome> Study::run() { return impl_->fit(true, impl_->folder / "model.elrom"); }
+std::vector<FieldOutcome> Study::run() { return impl_->fit(true, {}); }
+const Promotion& Study::promotion() const { return impl_->promotion; }
 const Settings& Study::settings() const { return impl_->settings; }
 const field::SnapshotStore& Study::store() const { return impl_->store; }
 const field::CaseSet& Study::cases() const { return impl_->cases; }
 const std::vector<std::size_t>& Study::held_out() const { return impl_->rows.held_out; }
+GateCases Study::gate_cases() const { return {impl_->store, impl_->rows.building, impl_->rows.held_out}; }
+
+bool Study::is_of_this_study(const model::BundleInfo& bundle) const {
+  const auto of = [&](const std::string& key) {
+    const auto found = bundle.provenance.find(key);
+    return found == bundle.provenance.end() ? std::string() : found->second;
+  };
+  const bool same_settings = bundle.settings.empty() || bundle.settings == settings_text(impl_->settings);
+  return same_settings && bundle.method == impl_->settings.method &&
+         of("store") == impl_->store.digest(impl_->rows.building);
+}
 
 void Study::begin_at(const std::filesystem::path& bundle) { impl_->earlier.emplace(bundle); }
 
 void Study::reuse_plans_of(const std::vector<std::string>& earlier_cases) {
+  impl_->retraining = true;
   impl_->earlier_rows.clear();
   for (std::size_t i = 0; i < impl_->cases.n_cases(); ++i) {
     const bool earlier = std::ranges::find(earlier_cases, impl_->cases.names[i]) != earlier_cases.end();

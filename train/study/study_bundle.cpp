@@ -8,17 +8,13 @@
 #include "elrom/model/bundle.hpp"
 
 namespace elrom::study {
-namespace {
-
-// What the bundle is made of; of its stages, by their inputs. No
-// time of day, so that the same study gives the same bytes.
-std::string content_digest(const StudyBundle& bundle, const std::map<std::string, FieldStage>& stages) {
+std::string content_of(const StudyBundle& bundle, const FieldStages& stages) {
   std::map<std::string, std::string> keys;
   for (const auto& [field, stage] : stages) keys[field] = stage.file.text("stage_digest");
   return base::digest_of_members(bundle, keys, std::string_view(program_version()));
 }
 
-bool holds(const std::filesystem::path& path, const std::string& content) {
+bool holds_content(const std::filesystem::path& path, const std::string& content) {
   if (!std::filesystem::exists(path)) return false;
   try {
     const model::BundleReader reader(path);
@@ -31,21 +27,23 @@ bool holds(const std::filesystem::path& path, const std::string& content) {
   }
 }
 
-}  // namespace
-
-void write_study_bundle(const std::filesystem::path& path, const StudyBundle& study,
-                        const std::map<std::string, FieldStage>& stages) {
-  const auto content = content_digest(study, stages);
-  if (holds(path, content)) return;
+void write_study_bundle(const std::filesystem::path& path, const StudyBundle& study, const Lineage& lineage,
+                        const FieldStages& stages) {
+  const auto content = content_of(study, stages);
+  if (holds_content(path, content)) return;
   model::Bundle bundle;
   bundle.info.method = study.method;
   bundle.info.fields = study.fields;
   bundle.info.schema = study.cases.schema;
   bundle.info.cases = study.cases.names;
+  bundle.info.case_digests = lineage.case_digests;
+  bundle.info.settings = lineage.settings;
   bundle.info.provenance = {{"program", program_version()},
                             {"store", study.store_digest},
                             {"settings", study.settings_digest},
                             {"content", content}};
+  if (!lineage.parent.empty()) bundle.info.provenance["parent"] = lineage.parent;
+  if (!lineage.date.empty()) bundle.info.provenance["date"] = lineage.date;
   nlohmann::ordered_json accuracy = nlohmann::ordered_json::object();
   for (const auto& [field, stage] : stages) {
     accuracy[field] = nlohmann::ordered_json::parse(stage.accuracy());

@@ -1,4 +1,5 @@
 #include "elrom/base/error.hpp"
+#include "elrom/study/held_out.hpp"
 #include "elrom/study/study.hpp"
 
 namespace elrom::study {
@@ -28,10 +29,19 @@ std::vector<field::Mirror> resolved_mirrors(const field::SnapshotStore& store, c
 
 std::vector<std::string> held_out_patterns(const field::SnapshotStore& store, const Settings& settings,
                                            Log& log) {
-  if (settings.split.held_out) return *settings.split.held_out;
-  if (store.furnace()) return store.furnace()->held_out;
-  log.warning("no case is held out: the store has no furnace description, and study.toml names none");
-  return {};
+  if (settings.split.held_out) {
+    expect_matches(store, *settings.split.held_out, "split.held_out");
+    return *settings.split.held_out;
+  }
+  if (!store.furnace()) {
+    log.warning("no case is held out: the store has no furnace description, and study.toml names none");
+    return {};
+  }
+  for (const auto& pattern : store.furnace()->held_out) {
+    if (store.find(pattern).empty())
+      log.warning("no case matches '" + pattern + "', held out by the store's furnace description");
+  }
+  return store.furnace()->held_out;
 }
 
 field::CaseSet study_cases(const field::SnapshotStore& store, const Settings& settings,

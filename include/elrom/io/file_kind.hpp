@@ -25,16 +25,17 @@ namespace kinds {
 inline constexpr FileKind mesh{"elrom-mesh", {1, 0}, "make it again with elrom-data mesh"};
 inline constexpr FileKind snapshots{
     "elrom-snapshots", {1, 1}, "import the cases again with elrom-data import"};
-inline constexpr FileKind bundle{"elrom-bundle", {1, 1}, "train again with elrom-train run"};
+inline constexpr FileKind bundle{"elrom-bundle", {1, 2}, "train again with elrom-train run"};
 inline constexpr FileKind prediction{"elrom-prediction", {1, 1}, "predict again with elrom-predict"};
 inline constexpr FileKind manifest{"elrom-manifest", {1, 0}, "fetch the shipped cases again"};
 inline constexpr FileKind check{"elrom-check", {1, 0}, "check again with elrom-data check"};
-inline constexpr FileKind split{"elrom-split", {1, 0}, "train again with elrom-train run"};
+inline constexpr FileKind split{"elrom-split", {1, 1}, "train again with elrom-train run"};
 inline constexpr FileKind timing{"elrom-timing", {1, 0}, "remove it"};
 inline constexpr FileKind trials{"elrom-trials", {1, 0}, "remove it to search anew"};
 inline constexpr FileKind stage{"elrom-stage", {1, 0}, "remove it"};
 inline constexpr FileKind checkpoint{"elrom-checkpoint", {1, 0}, "remove it"};
-inline constexpr FileKind retrain{"elrom-retrain", {1, 0}, "retrain again with elrom-train retrain"};
+inline constexpr FileKind versions{"elrom-versions", {1, 0}, "use a copy of it"};
+inline constexpr FileKind retrain{"elrom-retrain", {1, 1}, "retrain again with elrom-train retrain"};
 inline constexpr FileKind accuracy{"elrom-accuracy", {1, 0}, "report again with elrom-report accuracy"};
 inline constexpr FileKind learning_curve{
     "elrom-learning-curve", {1, 0}, "draw it again with elrom-report learning-curve"};
@@ -60,6 +61,7 @@ inline constexpr std::array all{mesh,
                                 trials,
                                 stage,
                                 checkpoint,
+                                versions,
                                 retrain,
                                 accuracy,
                                 learning_curve,

@@ -26,9 +26,15 @@ struct BundleInfo {
   std::string method;  ///< as asked: "auto", "networks", "pod_gp" ...
   std::vector<field::FieldInfo> fields;
   field::InputSchema schema;
-  std::vector<std::string> cases;                 ///< training cases
-  std::map<std::string, std::string> provenance;  ///< program, store digest, settings digest, created (UTC)
-  std::string accuracy_json = "{}";               ///< cross-validated errors by field, kept for display
+  std::vector<std::string> cases;  ///< training cases
+  /// SHA-256 of each over name, inputs and fields (SnapshotStore::digest); empty: before 1.2
+  std::vector<std::string> case_digests;
+  /// program, digests of store and settings; from 1.2 also the digest of the parent, the bundle that it was
+  /// made to take the place of, and the date it was told; what is not known is left out
+  std::map<std::string, std::string> provenance;
+  /// Of the study, as TOML; what says how and where it runs is at its default. Empty: before 1.2
+  std::string settings;
+  std::string accuracy_json = "{}";  ///< cross-validated errors by field, kept for display
 };
 
 /// A bundle under construction, or read whole.

@@ -28,6 +28,9 @@ class BlendModel final : public FieldModel {
   [[nodiscard]] std::size_t n_columns() const override { return parts_.front().model->n_columns(); }
   void predict(const Query& query, std::span<float> values, std::span<float> spread,
                Workspace& workspace) const override;
+  /// The parts that have a closed form are without the case, the others as they are; nullptr: none has.
+  [[nodiscard]] std::unique_ptr<FieldModel> without_case(std::size_t i_case) const override;
+  [[nodiscard]] const std::vector<Member>& members() const { return parts_; }
   void save(io::TensorFile& file, const std::string& prefix) const override;
   [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
                                                         const Wanted& wanted);
@@ -36,6 +39,11 @@ class BlendModel final : public FieldModel {
  private:
   std::vector<Member> parts_;
 };
+
+/// The model as it would be with one case more (PodModel::with_case); of a blend, the parts
+/// that have a closed form. nullptr: nothing of it has.
+[[nodiscard]] std::unique_ptr<FieldModel> with_case(const FieldModel& model, std::span<const double> inputs,
+                                                    std::span<const float> values);
 
 /// Mean over the symmetry group of g^-1(model(g(inputs))): exactly symmetric, and less noisy than the model
 /// alone. Mirrors keep every cell in its plane. Thread rule: as above.

@@ -75,6 +75,12 @@ class FieldModel {
   virtual void predict(const Query& query, std::span<float> values, std::span<float> spread,
                        Workspace& workspace) const = 0;
 
+  /// The model as it would be had training case `i_case` (in the bundle's order) never been there, with its
+  /// hyperparameters and modes kept; nullptr: there is no closed form for it.
+  [[nodiscard]] virtual std::unique_ptr<FieldModel> without_case(std::size_t /*i_case*/) const {
+    return nullptr;
+  }
+
   /// Puts tensors under "<prefix>/..." and the description as
   /// JSON text under `prefix` (its "kind" names the reader).
   virtual void save(io::TensorFile& file, const std::string& prefix) const = 0;

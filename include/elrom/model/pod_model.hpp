@@ -39,6 +39,11 @@ class PodModel final : public FieldModel {
 
   void predict(const Query& query, std::span<float> values, std::span<float> spread,
                Workspace& workspace) const override;
+  [[nodiscard]] std::unique_ptr<FieldModel> without_case(std::size_t i_case) const override;
+  /// As it would be with one case more, hyperparameters and modes kept; nullptr: no closed form for it.
+  /// @param values of the case, SI, (n_planes * n_columns); what the modes do not span of them is lost
+  [[nodiscard]] std::unique_ptr<FieldModel> with_case(std::span<const double> inputs,
+                                                      std::span<const float> values) const;
   void save(io::TensorFile& file, const std::string& prefix) const override;
 
   /// Kinds that are stored in this form.
@@ -50,6 +55,10 @@ class PodModel final : public FieldModel {
   /// out += sum over modes of weight * mode, or of weight * mode^2 for spreads. @param modes of one plane
   void add_modes(const float* modes, std::span<const float> weights, bool squares, std::span<float> out,
                  Workspace& workspace) const;
+
+  void add_modes_everywhere(std::span<const float> weights, std::span<float> out) const;
+  [[nodiscard]] std::unique_ptr<FieldModel> of_other_cases(
+      std::shared_ptr<const CoefficientModel> coefficients, const Eigen::VectorXd& mean_shift) const;
 
   Parts parts_;
   std::size_t n_planes_ = 0, n_columns_ = 0, n_modes_ = 0;

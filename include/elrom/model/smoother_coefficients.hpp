@@ -45,8 +45,20 @@ class SmootherCoefficients final : public CoefficientModel {
   [[nodiscard]] std::string kind() const override { return "smoother"; }
   [[nodiscard]] std::size_t n_inputs() const override { return features_.n_inputs(); }
   [[nodiscard]] std::size_t n_coefficients() const override { return n_coefficients_; }
+  [[nodiscard]] std::size_t n_cases() const { return static_cast<std::size_t>(z_.rows()); }
   [[nodiscard]] const FeatureMap& features() const { return features_; }
   [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
+  /// The smoother of other cases, with its hyperparameters kept and the rest exact: the weights of the cases
+  /// about their own mean (an antisymmetric group has none). The smoother holds its cases' coefficients, y =
+  /// (K + noise I) weights.
+  struct Changed {
+    std::shared_ptr<const SmootherCoefficients> coefficients;
+    Eigen::VectorXd mean_shift;  //!< by which the mean of the cases moves, in modes, (n_coefficients)
+  };
+  /// @param i_case one of at least two. @throws NumericalError when the others' covariance has no factor
+  [[nodiscard]] Changed without_case(std::size_t i_case) const;
+  /// @param coefficients of the case about the present mean, (n_coefficients). @throws as above
+  [[nodiscard]] Changed with_case(std::span<const double> inputs, const Eigen::VectorXd& coefficients) const;
   void predict(std::span<const double> inputs, std::span<double> coefficients, std::span<double> variance,
                bool best_build_only, Workspace& workspace) const override;
   void save(io::TensorFile& file, const std::string& prefix) const override;
@@ -54,6 +66,9 @@ class SmootherCoefficients final : public CoefficientModel {
                                                               const std::string& prefix);
 
  private:
+  [[nodiscard]] MatrixD coefficients_of_cases() const;  // (n_cases, n_coefficients)
+  [[nodiscard]] Changed of_other_cases(MatrixD z, const MatrixD& cases) const;
+
   FeatureMap features_;
   math::Standardiser scaler_;
   MatrixD z_;

@@ -1,15 +1,6 @@
 #pragma once
-// Scores of a predicted field against the truth, as pure functions on numbers.
-//
-// Definitions (held-out cases c, cells i, truth y, prediction p, mean m_i of the training cases):
-//   NRMSE             sqrt( sum (p - y)^2 / sum (m - y)^2 ), sums over cells and over all cases scored
-//                     together; 1 = predicting the training mean in every cell, 0 = perfect
-//   standardised MSE  mean of ((p - y) / sigma_j)^2, sigma_j of output column j over training cases and
-//                     planes (the source's figure, its eq. 6.1); columns that do not vary are left out
-//   RMSE              sqrt( mean (p - y)^2 ), in the field's unit
-//   R2                1 - sum (p - y)^2 / sum (y - mean y)^2, one mean for everything scored together
-//                     (the parity plot's)
-// Cells count alike, whatever their volume.
+// What a report scores beyond elrom/study/scores.hpp, whose NRMSE is the one here too: as pure functions on
+// numbers.
 //
 // Thread rule: pure functions.
 
@@ -18,41 +9,16 @@
 #include <vector>
 
 #include "elrom/math/matrix.hpp"
+#include "elrom/study/scores.hpp"
 
 namespace elrom::report {
 
-/// What the scores need to know of the training cases of one field.
-struct TrainingStatistics {
-  std::vector<double> cell_mean;     ///< over cases, (n_cells)
-  std::vector<double> column_sigma;  ///< over cases and planes, (n_columns)
-};
-
-/// @param values (n_cases, n_cells), n_cells a multiple of n_columns
-[[nodiscard]] TrainingStatistics training_statistics(const MatrixF& values, std::size_t n_columns);
-
-/// Sums over the scored cells; add two to score them together.
-struct ErrorSums {
-  std::size_t n = 0;
-  double error = 0;      ///< sum (p - y)^2
-  double departure = 0;  ///< sum (m - y)^2
-  std::size_t n_standardised = 0;
-  double standardised = 0;  ///< sum ((p - y) / sigma)^2
-  double truth_mean = 0;
-  double truth_spread = 0;  ///< sum (y - mean y)^2
-
-  ErrorSums& operator+=(const ErrorSums& other);
-  /// NaN where nothing was scored or the truth does not depart from the mean.
-  [[nodiscard]] double nrmse() const;
-  [[nodiscard]] double standardised_mse() const;
-  [[nodiscard]] double rmse() const;
-  [[nodiscard]] double r2() const;
-};
-
-/// @param truth, prediction (n_cells)
-/// @param part cells to score, empty: all
-[[nodiscard]] ErrorSums error_sums(std::span<const float> truth, std::span<const float> prediction,
-                                   const TrainingStatistics& statistics,
-                                   std::span<const std::size_t> part = {});
+using study::error_sums;
+using study::ErrorSums;
+using study::noise_at_loads;
+using study::noise_energy;
+using study::training_statistics;
+using study::TrainingStatistics;
 
 struct WorstCell {
   std::size_t cell = 0;
@@ -65,20 +31,6 @@ struct WorstCell {
 /// Share of cells with |p - y| <= half width.
 [[nodiscard]] double covered_share(std::span<const float> truth, std::span<const float> prediction,
                                    std::span<const float> half_width);
-
-/// Energy of the noise of one run: sum over cells of the unbiased
-/// variance between runs of the same boundary conditions.
-/// @param runs (n_runs >= 2, n_cells)
-[[nodiscard]] double noise_energy(const MatrixF& runs);
-
-/// Noise expected at other loads: a power law of the load through the measured ones (least squares in
-/// logarithms; the fluctuations of a furnace grow with its velocities), their mean where loads or energies do
-/// not allow one.
-/// @param measured_loads, energies of each set of repeated
-/// runs, at least one @return energy at each of `loads`
-[[nodiscard]] std::vector<double> noise_at_loads(std::span<const double> measured_loads,
-                                                 std::span<const double> energies,
-                                                 std::span<const double> loads);
 
 /// NRMSE with the noise of the truth taken off error and departure alike:
 /// sqrt((error - noise) / (departure - noise)); 0 where no more error than

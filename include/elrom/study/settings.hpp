@@ -21,6 +21,16 @@ struct PeerSettings {
   int folds = 8;         ///< load-grouped folds of the cross-validation in "auto"
 };
 
+struct TrainSettings {
+  std::vector<std::string> exclude;  ///< cases neither trained on nor held out: names or patterns
+};
+
+/// When a new model may take the place of the present one (gate.hpp).
+struct GateSettings {
+  double tolerance = 0.01;  ///< NRMSE that a field may lose
+  double deviations = 3;    ///< standard deviations of the scatter from which on a difference is real
+};
+
 struct Settings : networks::Settings {
   std::string effort = "standard";  ///< "quick" | "standard" | "thorough"
   std::string method = "auto";
@@ -29,6 +39,9 @@ struct Settings : networks::Settings {
   int threads = 0;  ///< 0: all
   std::string device = "cpu";
   std::vector<std::string> fields;  ///< empty: all of the store
+  std::string date;                 ///< kept in the bundle as it stands; empty: none
+  TrainSettings train;
+  GateSettings gate;
   PeerSettings peers;
 
   [[nodiscard]] int n_threads() const;  ///< threads, or what the machine has
@@ -40,6 +53,11 @@ struct Settings : networks::Settings {
 /// nearest key
 [[nodiscard]] Settings read_settings(const std::filesystem::path& file,
                                      const std::vector<std::string>& overrides = {});
+
+/// The same from a study's folder. The store that an earlier run was given stands in resolved.toml, and is
+/// taken from there where neither study.toml nor the command line names one.
+[[nodiscard]] Settings study_settings(const std::filesystem::path& study,
+                                      const std::vector<std::string>& overrides = {});
 
 /// The whole settings as TOML that reads back to the same
 /// settings; `section` ("screen") limits it to one table.

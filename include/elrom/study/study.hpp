@@ -5,7 +5,7 @@
 //
 //   STUDY/resolved.toml   settings as used
 //   STUDY/split.json      cases by part
-//   STUDY/model.elrom     the model
+//   STUDY/model.elrom     the model that answers: a link into STUDY/models (versions.hpp)
 //   STUDY/peers/*.elrom   peers on the same cases, each a bundle
 //   STUDY/stages/*        kept results
 //   STUDY/search.sqlite   every trial
@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -23,8 +24,10 @@
 #include "elrom/io/stage_cache.hpp"
 #include "elrom/methods/method.hpp"
 #include "elrom/methods/networks_method.hpp"
+#include "elrom/model/bundle.hpp"
 #include "elrom/networks/banding.hpp"
 #include "elrom/networks/trainer.hpp"
+#include "elrom/study/gate.hpp"
 #include "elrom/study/settings.hpp"
 
 namespace elrom::study {
@@ -43,6 +46,14 @@ struct FieldOutcome {
   std::vector<networks::Band> bands;  ///< screen and search only
 };
 
+/// What became of a model that was made for the study.
+struct Promotion {
+  enum class Kind { first, unchanged, promoted, refused };
+  Kind kind = Kind::first;
+  int number = 0;  ///< version of the model; of the present one where it is unchanged
+  std::optional<GateVerdict> verdict = {};  ///< where there was a present model to compare with
+};
+
 /// Thread rule: one thread at a time; settings.n_threads() is used inside.
 class Study {
  public:
@@ -53,16 +64,23 @@ class Study {
   /// The stages of the networks, one by one.
   std::vector<FieldOutcome> screen();
   std::vector<FieldOutcome> search();
-  /// The model alone. @param bundle where to; empty: model.elrom of the study
+  /// The model alone. @param bundle where to; empty: a version of the study's model, which takes the present
+  /// one's place through the gate (gate.hpp), unless it is the present one already
   std::vector<FieldOutcome> fit(const std::filesystem::path& bundle = {});
-  /// The model and every peer.
+  /// The model, as fit() makes it, and every peer; those stay as they are where the model is refused.
   std::vector<FieldOutcome> run();
+  /// Of the last run() or fit() without a path.
+  [[nodiscard]] const Promotion& promotion() const;
 
   [[nodiscard]] const Settings& settings() const;
   [[nodiscard]] const field::SnapshotStore& store() const;
   [[nodiscard]] const field::CaseSet& cases() const;
   /// Held-out rows of the store.
   [[nodiscard]] const std::vector<std::size_t>& held_out() const;
+  /// Rows that the gate goes by.
+  [[nodiscard]] GateCases gate_cases() const;
+  /// Whether a bundle was trained on these very cases with these settings: nothing new could be learned.
+  [[nodiscard]] bool is_of_this_study(const model::BundleInfo& bundle) const;
   /// Retraining: fit() takes the networks' bands and hyperparameters of these earlier cases, where the fast
   /// screen says that the cases since then left the bands as they were.
   void reuse_plans_of(const std::vector<std::string>& earlier_cases);
@@ -76,7 +94,8 @@ class Study {
 };
 
 /// Names and patterns of the cases that a study never builds with: the settings', else those of the store's
-/// furnace. That there are none is told.
+/// furnace. That there are none, or that one of the furnace's matches no case, is told.
+/// @throws UsageError for one of the settings' that matches no case
 [[nodiscard]] std::vector<std::string> held_out_patterns(const field::SnapshotStore& store,
                                                          const Settings& settings, Log& log);
 

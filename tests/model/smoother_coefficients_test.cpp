@@ -1,0 +1,138 @@
+#include "elrom/model/smoother_coefficients.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elrom/base/random.hpp"
+#include "elrom/math/linear_algebra.hpp"
+#include "elrom/model/composite_models.hpp"
+#include "elrom/model/pod_model.hpp"
+
+namespace elrom::model {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index n_cases = 7, n_inputs = 2, n_modes = 3;
+
+MatrixD random_matrix(Index rows, Index columns, std::uint64_t seed) {
+  base::Random random{base::Seed(seed)};
+  MatrixD values(rows, columns);
+  for (auto& value : values.reshaped()) value = random.normal();
+  return values;
+}
+
+SmootherKernel kernel(bool antisymmetric) {
+  SmootherKernel kernel{.antisymmetric = antisymmetric, .linear = 0.3, .constant = 0.2, .noise = 0.4};
+  kernel.inverse_lengths = Eigen::Vector2d(0.5, 0.8);
+  kernel.imbalance = Eigen::Vector2d(1, 0.7);
+  return kernel;
+}
+
+Eigen::MatrixXd covariance(const SmootherKernel& kernel, const MatrixD& z) {
+  Eigen::MatrixXd k = kernel.matrix(z, z);
+  k.diagonal().array() += kernel.noise;
+  return k;
+}
+
+/// A smoother of these cases' coefficients, by the textbook; a symmetric one about their mean.
+SmootherCoefficients smoother(const MatrixD& z, const MatrixD& coefficients, bool antisymmetric) {
+  MatrixD centred = coefficients;
+  if (!antisymmetric) centred.rowwise() -= coefficients.colwise().mean().eval();
+  const auto own = kernel(antisymmetric);
+  const math::Cholesky factor(covariance(own, z));
+  std::vector<Feature> features(2);
+  for (std::int32_t i = 0; i < 2; ++i) features[static_cast<std::size_t>(i)].terms = {{.form = {{i}, {1}}}};
+  return {
+      FeatureMap(features, 2),
+      math::Standardiser(Eigen::Vector2d::Zero(), Eigen::Vector2d::Ones()),
+      z,
+      {{own, factor.solve(centred), Eigen::VectorXd::Ones(n_modes), factor.inverse_factor().cast<float>()}}};
+}
+
+Eigen::VectorXd predicted(const SmootherCoefficients& model, const Eigen::Vector2d& inputs) {
+  Eigen::VectorXd coefficients(n_modes);
+  Workspace workspace;
+  model.predict({inputs.data(), 2}, {coefficients.data(), n_modes}, {}, false, workspace);
+  return coefficients;
+}
+
+class WithoutACase : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(OfEitherKind, WithoutACase, ::testing::Bool());
+
+TEST_P(WithoutACase, TheSmootherIsThatOfTheOthers) {
+  const MatrixD z = random_matrix(n_cases, n_inputs, 1), coefficients = random_matrix(n_cases, n_modes, 2);
+  const Eigen::Vector2d inputs(0.3, -0.6);
+  for (Index left_out = 0; left_out < n_cases; ++left_out) {
+    std::vector<Index> rest;
+    for (Index i = 0; i < n_cases; ++i)
+      if (i != left_out) rest.push_back(i);
+    const MatrixD others = coefficients(rest, Eigen::all);
+    const auto refitted = smoother(z(rest, Eigen::all), others, GetParam());
+    Eigen::VectorXd expected = predicted(refitted, inputs);
+    if (!GetParam()) expected += (others.colwise().mean() - coefficients.colwise().mean()).transpose();
+
+    const auto reduced =
+        smoother(z, coefficients, GetParam()).without_case(static_cast<std::size_t>(left_out));
+
+    EXPECT_TRUE((predicted(*reduced.coefficients, inputs) + reduced.mean_shift).isApprox(expected, 1e-9));
+    EXPECT_EQ(reduced.coefficients->n_cases(), 6u);
+  }
+}
+
+TEST_P(WithoutACase, ACaseThatIsTakenOutAndPutBackChangesNothing) {
+  const MatrixD z = random_matrix(n_cases, n_inputs, 1), coefficients = random_matrix(n_cases, n_modes, 2);
+  const auto whole = smoother(z, coefficients, GetParam());
+  const Index last = n_cases - 1;
+  const auto reduced = whole.without_case(static_cast<std::size_t>(last));
+  Eigen::VectorXd own = coefficients.row(last).transpose();
+  if (!GetParam()) own -= coefficients.topRows(last).colwise().mean().transpose();
+
+  const auto again = reduced.coefficients->with_case({z.row(last).data(), 2}, own);
+
+  const Eigen::Vector2d inputs(0.3, -0.6);
+  EXPECT_TRUE((predicted(*again.coefficients, inputs) + again.mean_shift + reduced.mean_shift)
+                  .isApprox(predicted(whole, inputs), 1e-9));
+}
+
+TEST(ModelWithoutACase, MovesItsMean) {
+  const MatrixD z = random_matrix(n_cases, n_inputs, 1), coefficients = random_matrix(n_cases, n_modes, 2);
+  MatrixF modes = MatrixF::Zero(n_modes, 4);  // orthogonal, as modes are
+  modes.diagonal() << 2, 1, 3;
+  const auto whole = std::make_shared<SmootherCoefficients>(smoother(z, coefficients, false));
+  const std::shared_ptr<const FieldModel> model =
+      make_pod_model("kernel", Eigen::VectorXd::Constant(4, 5), modes, {}, 2, whole);
+  const auto reduced = whole->without_case(2);
+  const Eigen::Vector2d inputs(0.3, -0.6);
+  const std::vector<std::int32_t> planes{0, 1};
+  std::vector<float> values(4);
+  Workspace workspace;
+
+  const auto without = model->without_case(2);
+  ASSERT_NE(without, nullptr);
+  without->predict({{inputs.data(), 2}, planes}, values, {}, workspace);
+
+  const Eigen::VectorXd expected =
+      modes.cast<double>().transpose() * (predicted(*reduced.coefficients, inputs) + reduced.mean_shift);
+  for (Index c = 0; c < 4; ++c) EXPECT_NEAR(values[static_cast<std::size_t>(c)], 5 + expected[c], 1e-5);
+
+  std::vector<float> own(4), back(4);
+  const Eigen::VectorXd departure =
+      modes.cast<double>().transpose() * (coefficients.row(2) - coefficients.colwise().mean()).transpose();
+  for (std::size_t c = 0; c < 4; ++c) own[c] = static_cast<float>(5 + departure[static_cast<Index>(c)]);
+  const auto added = with_case(*without, {z.row(2).data(), 2}, own);
+  ASSERT_NE(added, nullptr);
+  std::vector<float> whole_values(4);
+  model->predict({{inputs.data(), 2}, planes}, whole_values, {}, workspace);
+  added->predict({{inputs.data(), 2}, planes}, back, {}, workspace);
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(back[c], whole_values[c], 1e-4) << "taken out and put back";
+
+  const BlendModel blend({{{0.25}, model}, {{0.75}, model}});
+  const auto blended = blend.without_case(2);
+  ASSERT_NE(blended, nullptr);
+  std::vector<float> mixed(4);
+  blended->predict({{inputs.data(), 2}, planes}, mixed, {}, workspace);
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(mixed[c], values[c], 1e-5);
+}
+
+}  // namespace
+}  // namespace elrom::model

@@ -1,0 +1,170 @@
+// Versions of a study's model: log, diff, promote, rollback.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/model/bundle.hpp"
+#include "elrom/study/version_diff.hpp"
+#include "elrom/study/versions.hpp"
+
+namespace elrom::programs {
+namespace {
+
+using Json = nlohmann::json;
+using std::filesystem::path;
+
+Json verdict_of(const study::VersionEvent& event) {
+  return event.verdict.empty() ? Json() : Json::parse(event.verdict);
+}
+
+std::string shown(const Json& number) {
+  return number.is_number() ? base::rounded(number.get<double>()) : "not known";
+}
+
+std::string worse_fields(const Json& verdict) {
+  std::vector<std::string> worse;
+  for (const auto& field : verdict["fields"])
+    if (field["verdict"] == "worse")
+      worse.push_back(fmt::format("{} {} -> {}", field["field"].get<std::string>(), shown(field["before"]),
+                                  shown(field["after"])));
+  if (verdict["verdict"] == "worse") worse.emplace_back("the mean over fields");
+  return base::join(worse, ", ");
+}
+
+void print_event(const study::VersionEvent& event) {
+  fmt::print("{:>4}  {:<9} {:>5} cases  {}", event.number, event.by, event.n_cases,
+             event.promoted ? "answers" : "refused");
+  if (event.parent) fmt::print(", after {}", *event.parent);
+  if (!event.date.empty()) fmt::print(", {}", event.date);
+  if (const auto verdict = verdict_of(event); !verdict.is_null()) {
+    fmt::print(", error {} -> {} on {} {}", shown(verdict["before"]), shown(verdict["after"]),
+               verdict["cases"].size(), verdict["judged_on"].get<std::string>());
+    if (!event.promoted) fmt::print("; worse: {}", worse_fields(verdict));
+  }
+  fmt::print("\n");
+}
+
+int print_log(const path& folder) {
+  const study::Versions versions(folder);
+  for (const auto& event : versions.log()) print_event(event);
+  const auto current = versions.current();
+  if (current)
+    fmt::print("version {} answers: {}\n", *current, versions.file(*current).string());
+  else
+    fmt::print("no versions: {} {}\n", folder.string(),
+               std::filesystem::exists(folder / "model.elrom") ? "has a model from before there were any"
+                                                               : "has no model yet");
+  return 0;
+}
+
+void expect_study(const path& folder) {
+  if (!std::filesystem::is_directory(folder))
+    throw InputError({.what = "no such folder", .where = folder.string(), .expected = "a study"});
+}
+
+study::Versions open_to_change(const path& folder) {
+  study::Versions versions(folder);
+  versions.settle();
+  if (!versions.current())
+    throw InputError({.what = "no versions of a model",
+                      .where = folder.string(),
+                      .advice = "run: elrom-train run " + folder.string()});
+  return versions;
+}
+
+int promote(const path& folder, int number, const std::string& date) {
+  const base::FileLock lock(folder / ".lock");
+  auto versions = open_to_change(folder);
+  const model::BundleReader bundle(versions.known(number));
+  bundle.file().verify_all();
+  if (versions.current() == number) {
+    fmt::print("version {} answers already\n", number);
+    return 0;
+  }
+  const auto* judged = versions.last_of(number);
+  if (judged != nullptr && !judged->promoted)
+    fmt::print("this goes against the gate, which found it worse: {}\n", worse_fields(verdict_of(*judged)));
+  versions.record({.number = number, .by = "promote", .promoted = true, .date = date});
+  fmt::print("version {} answers now\n", number);
+  return 0;
+}
+
+int roll_back(const path& folder, const std::string& date) {
+  const base::FileLock lock(folder / ".lock");
+  auto versions = open_to_change(folder);
+  const auto previous = versions.previous();
+  if (!previous)
+    throw UsageError({.what = "no version to go back to",
+                      .where = folder.string(),
+                      .found = fmt::format("version {}, the first that answered", *versions.current())});
+  const model::BundleReader bundle(versions.known(*previous));
+  bundle.file().verify_all();
+  versions.record({.number = *previous, .by = "rollback", .promoted = true, .date = date});
+  fmt::print("version {} answers again\n", *previous);
+  return 0;
+}
+
+struct Options {
+  path folder;
+  int a = 0, b = 0;
+  std::string date;
+};
+
+void add(CLI::App& app, Work& run, const std::string& name, const std::string& what,
+         const std::vector<std::string>& numbers, bool changes,
+         const std::function<int(const Options&)>& work) {
+  auto* command = app.add_subcommand(name, what);
+  auto options = std::make_shared<Options>();
+  command->add_option("STUDY", options->folder, "folder of the study")->required();
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    command->add_option(numbers[i], i == 0 ? options->a : options->b, "number of a version")->required();
+  if (changes) command->add_option("--date", options->date, "kept in the log of versions");
+  command->callback([&run, options, work] {
+    run = [options, work] {
+      expect_study(options->folder);
+      return work(*options);
+    };
+  });
+}
+
+}  // namespace
+
+int tell(const study::Promotion& promotion, const path& folder) {
+  using Kind = study::Promotion::Kind;
+  if (promotion.verdict) fmt::print("{}", in_words(*promotion.verdict));
+  if (promotion.kind == Kind::unchanged) {
+    fmt::print("version {} answers already: the same model\n", promotion.number);
+  } else if (promotion.kind == Kind::refused) {
+    fmt::print(
+        "not promoted: version {} is kept and does not answer; worse: {}. "
+        "elrom-train promote {} {} makes it answer all the same\n",
+        promotion.number, base::join(promotion.verdict->what_is_worse(), ", "), folder.string(),
+        promotion.number);
+    return static_cast<int>(ExitStatus::refused);
+  } else {
+    fmt::print("version {} answers{}\n", promotion.number, promotion.kind == Kind::first ? "" : ": promoted");
+  }
+  return 0;
+}
+
+void add_versions(CLI::App& app, Work& run) {
+  add(app, run, "log", "versions of the study's model: what made each, the gate's verdict, which one answers",
+      {}, false, [](const Options& options) { return print_log(options.folder); });
+  add(app, run, "diff", "what is other in version B than in A: cases, settings, methods, errors by field",
+      {"A", "B"}, false, [](const Options& options) {
+        const study::Versions versions(options.folder);
+        fmt::print("{}", study::in_words(
+                             study::difference_of(versions.known(options.a), versions.known(options.b))));
+        return 0;
+      });
+  add(app, run, "promote", "make a version answer, whatever the gate said", {"N"}, true,
+      [](const Options& options) { return promote(options.folder, options.a, options.date); });
+  add(app, run, "rollback", "make the version answer that answered before the present one", {}, true,
+      [](const Options& options) { return roll_back(options.folder, options.date); });
+}
+
+}  // namespace elrom::programs
