@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
 #include "elrom/base/comma_list.hpp"
+#include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/ingest/import_checked.hpp"
@@ -75,7 +76,8 @@ refuse everything, drop that case, or keep it with a warning)")
       ->check(CLI::IsMember({"refuse", "drop", "keep"}));
   command->add_option("FILE", options->files, "CFD results, one a case")->type_name("FILE...");
   command->callback([options, policy, &chosen] {
-    if (options->files.empty() && options->furnace.empty()) throw CLI::RequiredError("FILE");
+    if (options->files.empty() && options->furnace.empty())
+      throw UsageError("elrom-data import needs FILE: CFD results, one a case");
     chosen = [options, policy] { return run_import(*options, *policy); };
   });
 }

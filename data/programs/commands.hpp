@@ -1,8 +1,9 @@
 #pragma once
 // The subcommands of elrom-data, one file each (command_<name>.cpp); elrom_data.cpp puts them together.
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "elrom/cli/cli.hpp"
 
 namespace elrom::programs {
 

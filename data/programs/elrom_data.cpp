@@ -2,18 +2,17 @@
 
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
-#include "elrom/base/error.hpp"
 #include "elrom/base/version.hpp"
+#include "elrom/units/udunits.hpp"
 
 namespace {
 
-using elrom::ExitStatus;
-
 int run(int argc, char** argv) {
-  CLI::App program("ELROM: prepare CFD results and collisions for training.", "elrom-data");
+  elrom::cli::App program("ELROM: prepare CFD results and collisions for training.", "elrom-data");
   program.set_version_flag("--version", elrom::program_version());
   program.require_subcommand(1);
-  program.get_formatter()->column_width(34);
+  program.column_width(34);
+  elrom::units::use_udunits();
   elrom::programs::Work chosen;
   elrom::programs::add_import(program, chosen);
   elrom::programs::add_inspect(program, chosen);
@@ -23,11 +22,7 @@ int run(int argc, char** argv) {
   elrom::programs::add_collisions(program, chosen);
   program.footer(
       "Exit status: 0 done, 2 wrong command line, 3 wrong input, 1 trouble of the machine, 130 interrupted.");
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-  }
+  if (const auto status = program.parse(argc, argv)) return *status;
   return chosen();
 }
 

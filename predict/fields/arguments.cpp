@@ -1,11 +1,10 @@
 #include "elrom/fields/arguments.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include "elrom/base/comma_list.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
+#include "elrom/cli/cli.hpp"
 #include "elrom/fields/ranges.hpp"
 
 namespace elrom::fields {
@@ -116,6 +115,15 @@ void add_run_options(CLI::App& app, Arguments& arguments, bool& no_verify, bool&
                "print where the time went; one step after the other, so the whole takes a little longer");
 }
 
+void check_output(const Arguments& arguments) {
+  std::error_code unreadable;  // is told when it is written to
+  const bool there = std::filesystem::exists(arguments.output, unreadable);
+  if (there && !std::filesystem::is_directory(arguments.output, unreadable) &&
+      !arguments.to_standard_output())
+    throw UsageError(
+        {.what = "--output " + arguments.output + " is a file", .expected = "a folder"});
+}
+
 void check_together(Arguments& arguments) {
   if (arguments.formats.empty())
     arguments.formats = {arguments.to_standard_output() ? Format::csv : Format::hdf};
@@ -146,25 +154,20 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   CLI::App app(lines_of(description) + "\n", "elrom-predict");
   app.set_version_flag("--version", program_version());
   app.footer(lines_of(footer));
-  app.get_formatter()->column_width(24);
+  app.column_width(24);
   add_input_options(app, arguments);
   add_selection_options(app, arguments, texts);
   add_output_options(app, arguments, texts);
   add_physics_options(app, arguments);
   add_run_options(app, arguments, no_verify, no_sync);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {
-    return {.arguments = {}, .exit_status = app.exit(success)};
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(std::string(error.what()) + "; --help lists the options");
-  }
+  if (const auto status = app.parse(argc, argv)) return {.arguments = {}, .exit_status = status};
   if (!texts.planes.empty()) arguments.planes = parse_planes(texts.planes);
   if (!texts.region.empty()) arguments.region = parse_box(texts.region);
   for (const auto& name : texts.formats) arguments.formats.push_back(format_named(name).format);
   arguments.best_build_only = texts.builds == "best";
   arguments.verify = !no_verify;
   arguments.sync = !no_sync;
+  check_output(arguments);
   check_together(arguments);
   return {.arguments = std::move(arguments), .exit_status = {}};
 }

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <system_error>
@@ -41,6 +42,8 @@ int run_app(std::string_view program, const std::function<int()>& body) noexcept
   } catch (const std::bad_alloc&) {
     return report(program, "out of memory; ask for fewer fields, cases or builds at a time",
                   ExitStatus::internal);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return report(program, error.path1().string() + ": " + error.code().message(), ExitStatus::internal);
   } catch (const std::system_error& error) {
     const bool exhausted = error.code() == std::errc::resource_unavailable_try_again;
     return report(program, std::string(error.what()) + (exhausted ? "; no more threads or memory" : ""),

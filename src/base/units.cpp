@@ -4,6 +4,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <mutex>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
@@ -58,7 +61,65 @@ const std::vector<Unit>& table() {
   return units;
 }
 
+/// Without what is not common.
+const Unit* common(std::string_view symbol) {
+  const auto& units = table();
+  const auto found = std::ranges::find(units, symbol, &Unit::symbol);
+  return found == units.end() ? nullptr : &*found;
+}
+
+/// What files and the source brought.
+struct Further {
+  std::mutex mutex;
+  std::map<std::string, Unit, std::less<>> units;
+  UnitSource source;
+};
+Further& further() {
+  static Further units;
+  return units;
+}
+
+/// Null: unknown.
+const Unit* further_unit(std::string_view symbol) {
+  auto& [mutex, units, source] = further();
+  const std::lock_guard lock(mutex);
+  const auto found = units.find(symbol);
+  if (found != units.end()) return &found->second;
+  auto made = source ? source(symbol) : std::nullopt;
+  return made ? &units.emplace(symbol, *std::move(made)).first->second : nullptr;
+}
+
+/// Versions of a source may round differently.
+bool same(const Unit& a, const Unit& b) {
+  const auto near = [](double x, double y) { return std::abs(x - y) <= 1e-9 * std::abs(x); };
+  return a.si == b.si && near(a.factor, b.factor) && near(a.offset, b.offset);
+}
+
 }  // namespace
+
+bool is_common_unit(std::string_view symbol) { return common(symbol) != nullptr; }
+
+void know_unit(const Unit& unit) {
+  if (unit.symbol != unit.si) know_unit({unit.si, unit.si});
+  if (unit.symbol.empty() || unit.si.empty() || !std::isfinite(unit.factor) || unit.factor == 0 ||
+      !std::isfinite(unit.offset))
+    throw InputError({.what = "no unit",
+                      .found = "'" + unit.symbol + "': value * " + number(unit.factor) + " + " +
+                               number(unit.offset) + " in '" + unit.si + "'"});
+  const auto* known = common(unit.symbol);
+  auto& [mutex, units, source] = further();
+  const std::lock_guard lock(mutex);
+  if (known == nullptr) known = &units.emplace(unit.symbol, unit).first->second;
+  if (!same(*known, unit))
+    throw InputError({.what = "unit '" + unit.symbol + "' means something else",
+                      .found = "factor " + number(unit.factor) + " to " + unit.si,
+                      .expected = "factor " + number(known->factor) + " to " + known->si});
+}
+
+void set_unit_source(UnitSource source) {
+  const std::lock_guard lock(further().mutex);
+  further().source = std::move(source);
+}
 
 const Unit& unit(std::string_view symbol) {
   // Spellings that mean the same and need no error.
@@ -67,12 +128,10 @@ const Unit& unit(std::string_view symbol) {
   for (const auto& [spelling, canonical] : aliases) {
     if (symbol == spelling) symbol = canonical;
   }
-  const auto& units = table();
-  const auto found =
-      std::find_if(units.begin(), units.end(), [&](const Unit& u) { return u.symbol == symbol; });
-  if (found != units.end()) return *found;
+  if (const auto* known = common(symbol)) return *known;
+  if (const auto* known = further_unit(symbol)) return *known;
   std::vector<std::string> symbols;
-  for (const auto& u : units) symbols.push_back(u.symbol);
+  for (const auto& u : table()) symbols.push_back(u.symbol);
   throw InputError(
       {.what = "unknown unit '" + std::string(symbol) + "'", .advice = "known are: " + join(symbols, ", ")});
 }
@@ -82,6 +141,12 @@ std::vector<std::string> units_of(std::string_view si) {
   for (const auto& u : table()) {
     if (u.si == si) symbols.push_back(u.symbol);
   }
+  auto& [mutex, units, source] = further();
+  const std::lock_guard lock(mutex);
+  for (const auto& [symbol, unit] : units) {
+    if (unit.si == si) symbols.push_back(symbol);
+  }
+  if (symbols.empty()) symbols.emplace_back(si);
   return symbols;
 }
 

@@ -101,8 +101,8 @@ endfunction()
 # A precompiled header brings the level it was made with along, so each level has its own.
 set(ELROM_DRIVER_OPTIMISATION $<$<CONFIG:Release>:-O1>)
 
-# elrom_driver(target [LIBTORCH]) -> compiled like all programs: little optimised, with the header they share, which knows CLI11
-# and fmt. LIBTORCH: the sources include it; they are compiled as elrom::torch is, whose header they take.
+# elrom_driver(target [LIBTORCH]) -> compiled like all programs: little optimised, with the header they share, which knows fmt.
+# LIBTORCH: the sources include it; they are compiled as elrom::torch is, whose header they take.
 function(elrom_driver target)
   cmake_parse_arguments(ARG "LIBTORCH" "" "" ${ARGN})
   elrom_compile_options(${target})
@@ -115,10 +115,10 @@ function(elrom_driver target)
   if(NOT TARGET elrom-driver-headers)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/driver_headers.cpp CONTENT "")
     add_library(elrom-driver-headers OBJECT ${PROJECT_BINARY_DIR}/driver_headers.cpp)
-    target_link_libraries(elrom-driver-headers PRIVATE elrom::core CLI11::CLI11 fmt::fmt ${ELROM_JSON})
+    target_link_libraries(elrom-driver-headers PRIVATE elrom::core fmt::fmt ${ELROM_JSON})
     elrom_compile_options(elrom-driver-headers)
     target_compile_options(elrom-driver-headers PRIVATE ${ELROM_DRIVER_OPTIMISATION})
-    elrom_precompile(elrom-driver-headers ${ELROM_COMMON_HEADERS} <CLI/CLI.hpp> <fmt/format.h>)
+    elrom_precompile(elrom-driver-headers ${ELROM_COMMON_HEADERS} <fmt/format.h>)
   endif()
   target_precompile_headers(${target} REUSE_FROM elrom-driver-headers)
   target_compile_options(${target} PRIVATE ${ELROM_DRIVER_OPTIMISATION} -fpch-preprocess)

@@ -3,8 +3,39 @@
 #include <cmath>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/units.hpp"
 
 namespace elrom::field::detail {
+
+namespace {
+
+/// Of units that not every ELROM knows: what they are in SI.
+void write_scales(const io::Hdf5Group& group, const InputSchema& schema) {
+  std::vector<double> factors, offsets;
+  bool all_common = true;
+  for (const auto& input : schema.inputs()) {
+    const auto& unit = base::unit(input.display_unit);
+    factors.push_back(unit.factor);
+    offsets.push_back(unit.offset);
+    all_common = all_common && base::is_common_unit(unit.symbol);
+  }
+  if (all_common) return;
+  group.write<double>("factor", factors);
+  group.write<double>("offset", offsets);
+}
+
+void read_scales(const io::Hdf5Group& group, const std::vector<InputInfo>& inputs) {
+  if (!group.has("factor")) return;
+  const auto numbers = [&](const char* name) {
+    group.dataset(name).expect_shape({inputs.size()});
+    return group.dataset(name).read<double>();
+  };
+  const auto factors = numbers("factor"), offsets = numbers("offset");
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    base::know_unit({inputs[i].display_unit, inputs[i].unit, factors[i], offsets[i]});
+}
+
+}  // namespace
 
 void write_schema(const io::Hdf5Group& root, const InputSchema& schema) {
   std::vector<std::string> units, display;
@@ -16,6 +47,7 @@ void write_schema(const io::Hdf5Group& root, const InputSchema& schema) {
   group.write_texts("name", schema.names());
   group.write_texts("unit", units);
   group.write_texts("display_unit", display);
+  write_scales(group, schema);
 }
 
 InputSchema read_schema(const io::Hdf5Group& root) {
@@ -26,6 +58,7 @@ InputSchema read_schema(const io::Hdf5Group& root) {
   const auto units = group.dataset("unit").read_texts(), display = group.dataset("display_unit").read_texts();
   std::vector<InputInfo> inputs;
   for (std::size_t i = 0; i < names.size(); ++i) inputs.push_back({names[i], units[i], display[i]});
+  read_scales(group, inputs);
   return InputSchema(std::move(inputs));
 }
 

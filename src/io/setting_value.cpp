@@ -36,8 +36,10 @@ std::string pair_text(const std::pair<std::string, std::string>& pair) {
 /// toml++'s tree into ours.
 class SettingsParser {
  public:
-  SettingsParser(const std::string& file, SettingsFault fault)
-      : source_(std::make_shared<const SettingValue::Source>(file, fault)) {}
+  enum class Source { file, command_line };
+  SettingsParser(const std::string& where, SettingsFault fault, Source kind = Source::file)
+      : source_(std::make_shared<const SettingValue::Source>(where, fault)),
+        has_lines_(kind == Source::file) {}
 
   [[nodiscard]] SettingValue parse(std::string_view text) const {
     try {
@@ -54,7 +56,7 @@ class SettingsParser {
     SettingValue value;
     value.key_ = key;
     value.name_ = name;
-    value.line_ = node.source().begin.line;
+    value.line_ = has_lines_ ? node.source().begin.line : 0;
     value.source_ = source_;
     if (const auto* table = node.as_table()) {
       value.value_ = SettingValue::Table{members_of(*table, key)};
@@ -86,6 +88,7 @@ class SettingsParser {
   }
 
   std::shared_ptr<const SettingValue::Source> source_;
+  bool has_lines_;
 };
 
 std::string SettingValue::where() const {
@@ -147,10 +150,11 @@ SettingValue parse_override(const std::string& text) {
     throw UsageError({.what = "no setting", .where = "--set", .found = text, .expected = "key=value"});
   }
   const auto key = base::trim(text.substr(0, equals)), value = base::trim(text.substr(equals + 1));
+  const SettingsParser parser("--set " + text, SettingsFault::usage, SettingsParser::Source::command_line);
   try {
-    return parse_settings(key + " = " + value, "--set");
+    return parser.parse(key + " = " + value);
   } catch (const UsageError&) {
-    return parse_settings(key + " = " + toml_text(value), "--set");
+    return parser.parse(key + " = " + toml_text(value));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "elrom/base/enum_names.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/units.hpp"
 #include "model_parts.hpp"
 
 namespace elrom::model {
@@ -46,6 +47,23 @@ field::FieldInfo field_from_json(const Json& json) {
   return info;
 }
 
+/// With what the unit is in SI where not every ELROM knows it.
+Json to_json(const field::InputInfo& input) {
+  Json json{{"name", input.name}, {"unit", input.unit}, {"display_unit", input.display_unit}};
+  const auto& unit = base::unit(input.display_unit);
+  if (!base::is_common_unit(unit.symbol)) json.update({{"factor", unit.factor}, {"offset", unit.offset}});
+  return json;
+}
+
+field::InputInfo input_from_json(const Json& json) {
+  field::InputInfo input{json.at("name").get<std::string>(), json.at("unit").get<std::string>(),
+                         json.at("display_unit").get<std::string>()};
+  if (json.contains("factor"))
+    base::know_unit(
+        {input.display_unit, input.unit, json.at("factor").get<double>(), json.at("offset").get<double>()});
+  return input;
+}
+
 }  // namespace
 
 std::string to_json(const BundleDescription& description) {
@@ -59,10 +77,7 @@ std::string to_json(const BundleDescription& description) {
   json["fields"] = Json::array();
   for (const auto& field : info.fields) json["fields"].push_back(to_json(field));
   json["inputs"] = Json::array();
-  for (const auto& input : info.schema.inputs()) {
-    json["inputs"].push_back(
-        {{"name", input.name}, {"unit", input.unit}, {"display_unit", input.display_unit}});
-  }
+  for (const auto& input : info.schema.inputs()) json["inputs"].push_back(to_json(input));
   json["mesh"] = {{"n_planes", description.n_planes},
                   {"n_columns", description.n_columns},
                   {"digest", description.mesh_digest}};
@@ -88,10 +103,7 @@ BundleDescription bundle_description(const std::string& text, const std::string&
     }
     for (const auto& field : json.at("fields")) info.fields.push_back(field_from_json(field));
     std::vector<field::InputInfo> inputs;
-    for (const auto& input : json.at("inputs")) {
-      inputs.push_back({input.at("name").get<std::string>(), input.at("unit").get<std::string>(),
-                        input.at("display_unit").get<std::string>()});
-    }
+    for (const auto& input : json.at("inputs")) inputs.push_back(input_from_json(input));
     info.schema = field::InputSchema(std::move(inputs));
     const auto& mesh = json.at("mesh");
     description.n_planes = whole_number<std::size_t>(mesh.at("n_planes"));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 #include "elrom/base/error.hpp"
@@ -16,6 +17,19 @@ TEST(RunApp, TurnsErrorsIntoOneLineAndTheirStatus) {
 
   EXPECT_EQ(status, 3);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "elrom-x: error: no such field\n");
+}
+
+TEST(RunApp, NamesTheFileThatTheSystemRefused) {
+  testing::internal::CaptureStderr();
+
+  const int status = run_app("elrom-x", []() -> int {
+    std::filesystem::create_directories("/proc/self/stat/folder");
+    return 0;
+  });
+
+  EXPECT_EQ(status, 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "elrom-x: error: /proc/self/stat/folder: Not a directory\n");
 }
 
 TEST(RunApp, PassesTheBodysStatusOn) {

@@ -35,6 +35,34 @@ TEST(Units, HeadingSplitsIntoNameAndUnit) {
 
 TEST(Units, DimensionsListTheirSymbols) { EXPECT_THAT(units_of("kg/s"), testing::Contains("t/h")); }
 
+TEST(Units, FilesMayBringFurtherOnes) {
+  EXPECT_FALSE(is_common_unit("cubit"));
+  know_unit({"cubit", "m", 0.4572});
+  EXPECT_DOUBLE_EQ(unit("cubit").to_si(2), 0.9144);
+  EXPECT_THAT(units_of("m"), testing::Contains("cubit"));
+  know_unit({"cubit", "m", 0.4572 * (1 + 1e-12)});
+  EXPECT_ERROR(InputError, "unit 'cubit' means something else", know_unit({"cubit", "m", 0.5}));
+  EXPECT_ERROR(InputError, "unit 't/h' means something else", know_unit({"t/h", "kg/s", 1}));
+  EXPECT_ERROR(InputError, "no unit", know_unit({"naught", "m", 0}));
+  EXPECT_ERROR(InputError, "no unit", know_unit({"", "m", 1}));
+  know_unit({"ZW/m2", "W/m2", 1e21});
+  EXPECT_EQ(unit("W/m2").to_si(3), 3);
+}
+
+TEST(Units, UnknownSymbolsAreAskedOfTheSource) {
+  int asked = 0;
+  set_unit_source([&](std::string_view symbol) {
+    ++asked;
+    return symbol == "ell" ? std::optional(Unit{"ell", "m", 1.143}) : std::nullopt;
+  });
+  EXPECT_DOUBLE_EQ(unit("ell").factor, 1.143);
+  EXPECT_DOUBLE_EQ(unit("kg/s").factor, 1);
+  EXPECT_DOUBLE_EQ(unit("ell").factor, 1.143);
+  EXPECT_EQ(asked, 1);
+  EXPECT_ERROR(InputError, "unknown unit 'elk'", unit("elk"));
+  set_unit_source({});
+}
+
 TEST(Units, QuantitiesMayHaveAUnitWithOrWithoutASpace) {
   EXPECT_DOUBLE_EQ(quantity("315um", "m"), 315e-6);
   EXPECT_DOUBLE_EQ(quantity(" 315 \u00b5m ", "m"), 315e-6);

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/app.hpp"
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/cli/cli.hpp"
 #include "elrom/field/mesh.hpp"
 #include "fuzz_inputs.hpp"
 #include "support/temporary_folder.hpp"
@@ -90,26 +90,23 @@ int run_campaign(Workshop shop, const std::vector<std::string>& only, const std:
 }  // namespace elrom::faults
 
 int main(int argc, char** argv) {
-  CLI::App app("Faults done to ELROM's programs and files, and how much of it they survive.");
-  elrom::faults::Workshop shop;
-  shop.programs = ELROM_BIN_DIR;
-  shop.preload = ELROM_PRELOAD;
-  shop.source = ELROM_SOURCE_DIR;
-  shop.fuzzers = shop.source / "build/fuzz/tests";
-  std::string json;
-  std::vector<std::string> only;
-  app.add_flag("--small", shop.small, "A short version: about a minute");
-  app.add_option("--fuzz-inputs", shop.n_fuzz,
-                 "Inputs for libFuzzer's programs: ten million, 20000 with --small");
-  app.add_option("--fuzzers", shop.fuzzers, "Folder of libFuzzer's programs (cmake --preset fuzz)");
-  app.add_option("--json", json, "Write the tallies to this file")->type_name("FILE");
-  app.add_option("--only", only, "Only these sections (kills, truncations ...)")->delimiter(',');
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(elrom::ExitStatus::usage);
-  }
-  if (shop.n_fuzz == 0) shop.n_fuzz = shop.times(10'000'000, 20'000);
-  return elrom::base::run_app("fault_campaign",
-                              [&] { return elrom::faults::run_campaign(shop, only, json); });
+  return elrom::base::run_app("fault_campaign", [&] {
+    elrom::cli::App app("Faults done to ELROM's programs and files, and how much of it they survive.");
+    elrom::faults::Workshop shop;
+    shop.programs = ELROM_BIN_DIR;
+    shop.preload = ELROM_PRELOAD;
+    shop.source = ELROM_SOURCE_DIR;
+    shop.fuzzers = shop.source / "build/fuzz/tests";
+    std::string json;
+    std::vector<std::string> only;
+    app.add_flag("--small", shop.small, "A short version: about a minute");
+    app.add_option("--fuzz-inputs", shop.n_fuzz,
+                   "Inputs for libFuzzer's programs: ten million, 20000 with --small");
+    app.add_option("--fuzzers", shop.fuzzers, "Folder of libFuzzer's programs (cmake --preset fuzz)");
+    app.add_option("--json", json, "Write the tallies to this file")->type_name("FILE");
+    app.add_option("--only", only, "Only these sections (kills, truncations ...)")->delimiter(',');
+    if (const auto status = app.parse(argc, argv)) return *status;
+    if (shop.n_fuzz == 0) shop.n_fuzz = shop.times(10'000'000, 20'000);
+    return elrom::faults::run_campaign(shop, only, json);
+  });
 }

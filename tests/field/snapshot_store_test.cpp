@@ -6,6 +6,7 @@
 
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/units.hpp"
 #include "elrom/io/hdf5.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/throws.hpp"
@@ -67,6 +68,23 @@ TEST_F(Store, GrowsByLaterWriters) {
 
   EXPECT_THAT(store.find("*"), ElementsAre(0, 1));
   EXPECT_EQ(store.read("pressure", store.find("b"))(0, 5), 2);
+}
+
+TEST_F(Store, BringsUnitsThatNotEveryElromKnows) {
+  base::know_unit({"barn_door", "K", 2.5, 100});
+  schema_ = InputSchema{{{"primary_air", "kg/s", "t/h"}, {"gas_temperature", "K", "barn_door"}}};
+  write({{"a", 1}});
+  EXPECT_THAT(io::Hdf5File::open(path_).dataset("inputs/factor").read<double>(),
+              ElementsAre(base::unit("t/h").factor, 2.5));
+  // As another process would find it, which knows no such unit.
+  const auto edited = io::Hdf5File::open(path_, io::Hdf5File::Access::edit).group("inputs");
+  edited.remove("display_unit");
+  edited.write_texts("display_unit", {"t/h", "barn_gate"});
+
+  const auto store = SnapshotStore::open(path_);
+
+  EXPECT_EQ(store.schema()[1].display_unit, "barn_gate");
+  EXPECT_DOUBLE_EQ(base::unit("barn_gate").to_si(10), 125);
 }
 
 TEST_F(Store, WithoutCommitTheOldStoreIsUntouched) {

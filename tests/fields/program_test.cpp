@@ -153,6 +153,13 @@ TEST_F(ProgramTest, WritesEveryFormatAtOnce) {
   EXPECT_THAT(test::read_bytes(folder_ / "out/good.csv"), HasSubstr("pressure_half_width [Pa]"));
 }
 
+TEST_F(ProgramTest, AFileCannotBeTheOutputFolder) {
+  const auto outcome = predict(output("cases.csv"));
+
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.text, HasSubstr("cases.csv is a file: expected a folder\n"));
+}
+
 TEST_F(ProgramTest, MistakesGetOneLineAndTheirExitStatus) {
   const std::pair<const char*, int> mistakes[] = {
       {"--fields presure", 2}, {"--planes 0:6", 2},  {"--region 1:2", 2},

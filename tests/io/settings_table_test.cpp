@@ -177,6 +177,8 @@ TEST(Override, TakesABareWordForAText) {
   EXPECT_EQ(*parse_override("drive=shaft").member("drive")->text(), "shaft");
   EXPECT_EQ(*parse_override(R"(drive = a "b" \c)").member("drive")->text(), R"(a "b" \c)");
   EXPECT_EQ(*parse_override("n=3").member("n")->whole(), 3);
+  EXPECT_ERROR(UsageError, "setting n in --set n=x: found \"x\"",
+               read_whole(*parse_override("n=x").member("n"), 0, 9));
   EXPECT_ERROR(UsageError, "expected key=value", parse_override("drive"));
   EXPECT_ERROR(UsageError, "expected key=value", parse_override("=3"));
 }

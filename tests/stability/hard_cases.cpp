@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/app.hpp"
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/cli/cli.hpp"
 #include "stages.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -40,15 +40,14 @@ int run(const std::string& json) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What becomes of every hard case of data: constant columns, wild cells, two cases ...");
-  std::string json;
-  bool small = false;
-  app.add_option("--json", json, "Write the table to this file too");
-  app.add_flag("--small", small, "Accepted for uniformity: the table takes seconds as it is");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(elrom::ExitStatus::usage);
-  }
-  return elrom::base::run_app("hard_cases", [&] { return run(json); });
+  return elrom::base::run_app("hard_cases", [&] {
+    elrom::cli::App app(
+        "What becomes of every hard case of data: constant columns, wild cells, two cases ...");
+    std::string json;
+    bool small = false;
+    app.add_option("--json", json, "Write the table to this file too");
+    app.add_flag("--small", small, "Accepted for uniformity: the table takes seconds as it is");
+    if (const auto status = app.parse(argc, argv)) return *status;
+    return run(json);
+  });
 }

@@ -1,56 +1,39 @@
 #include "support/benchmark.hpp"
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/app.hpp"
 #include "elrom/base/atomic_file.hpp"
+#include "elrom/base/comma_list.hpp"
 #include "elrom/base/version.hpp"
 
 namespace elrom::benchmark {
 
-struct CommandLine::App {
-  CLI::App app;
-
-  template <class T>
-  void add(const std::string& name, T& value, const std::string& help, Need need) {
-    app.add_option(name, value, help)->required(need == Need::required)->capture_default_str();
-  }
-};
-
-CommandLine::CommandLine(const std::string& what) : app_(new App{CLI::App(what)}) {}
-CommandLine::~CommandLine() = default;
+CommandLine::CommandLine(const std::string& what) : app_(what) {}
 
 void CommandLine::add(const std::string& name, bool& value, const std::string& help) {
-  app_->app.add_flag(name, value, help);
+  app_.add_flag(name, value, help);
 }
 void CommandLine::add(const std::string& name, int& value, const std::string& help) {
-  app_->add(name, value, help, Need::optional);
+  app_.add_option(name, value, help)->capture_default_str();
 }
 void CommandLine::add(const std::string& name, std::string& value, const std::string& help, Need need) {
-  app_->add(name, value, help, need);
+  app_.add_option(name, value, help)->required(need == Need::required)->capture_default_str();
 }
 void CommandLine::add(const std::string& name, std::filesystem::path& value, const std::string& help,
                       Need need) {
-  app_->add(name, value, help, need);
+  app_.add_option(name, value, help)->required(need == Need::required)->capture_default_str();
 }
 void CommandLine::add_list(const std::string& name, std::vector<std::string>& values,
                            const std::string& help) {
-  app_->app.add_option(name, values, help)->delimiter(',')->allow_extra_args(false)->capture_default_str();
+  base::comma_list(app_.add_option(name, values, help))->capture_default_str();
 }
 void CommandLine::add_repeated(const std::string& name, std::vector<std::string>& values,
                                const std::string& help) {
-  app_->app.add_option(name, values, help)->allow_extra_args(false);
+  base::repeatable(app_.add_option(name, values, help));
 }
 
-std::optional<int> CommandLine::parse(int argc, char** argv) {
-  try {
-    app_->app.parse(argc, argv);
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    return app_->app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-  }
-}
+std::optional<int> CommandLine::parse(int argc, char** argv) { return app_.parse(argc, argv); }
 
 void Arguments::add_to(CommandLine& line, const std::string& store_help, CommandLine::Need store_need) {
   line.add("--json", json, "write the figures to this file");

@@ -20,6 +20,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/version.hpp"
+#include "elrom/cli/cli.hpp"
 
 namespace elrom::benchmark {
 
@@ -34,13 +35,10 @@ class Stopwatch {
   Clock::time_point begin_ = Clock::now();
 };
 
-/// A command line. CLI11 is in benchmark.cpp alone: it costs every source that reads it five seconds.
+/// A command line.
 class CommandLine {
  public:
   explicit CommandLine(const std::string& what);
-  ~CommandLine();
-  CommandLine(const CommandLine&) = delete;
-  CommandLine& operator=(const CommandLine&) = delete;
 
   enum class Need { optional, required };
   void add(const std::string& name, bool& value, const std::string& help);
@@ -53,12 +51,11 @@ class CommandLine {
   /// one value each time the option is given
   void add_repeated(const std::string& name, std::vector<std::string>& values, const std::string& help);
 
-  /// @return the exit status where the program ends here: --help, or a wrong command line
+  /// @return the exit status where the program ends here: --help. @throws UsageError
   [[nodiscard]] std::optional<int> parse(int argc, char** argv);
 
  private:
-  struct App;
-  std::unique_ptr<App> app_;
+  cli::App app_;
 };
 
 /// Options that every benchmark has.

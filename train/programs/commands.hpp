@@ -1,7 +1,6 @@
 #pragma once
 // The subcommands of elrom-train, one file each (command_<name>.cpp).
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "elrom/base/log.hpp"
+#include "elrom/cli/cli.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/surrogate/tree_trainer.hpp"
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 
 #include "elrom/base/app.hpp"
@@ -13,6 +12,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/version.hpp"
+#include "elrom/cli/cli.hpp"
 #include "elrom/report/accuracy.hpp"
 #include "elrom/report/collisions.hpp"
 #include "elrom/report/cost.hpp"
@@ -203,9 +203,9 @@ void add_collisions(CLI::App& app, Arguments& arguments) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{
-      R"(Reports on trained ELROM studies and collision models.
-Exit status: 2 usage, 3 input, 5 numerical, 130 interrupted.)"};
+  cli::App app(R"(Reports on trained ELROM studies and collision models.
+Exit status: 2 usage, 3 input, 5 numerical, 130 interrupted.)",
+               "elrom-report");
   app.set_version_flag("--version", program_version());
   app.require_subcommand(1);
   Arguments arguments;
@@ -213,11 +213,7 @@ Exit status: 2 usage, 3 input, 5 numerical, 130 interrupted.)"};
   add_learning_curve(app, arguments);
   add_cost(app, arguments);
   add_collisions(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::usage);
-  }
+  if (const auto status = app.parse(argc, argv)) return *status;
   const auto log = make_console_log(arguments.quiet ? Level::warning : Level::info);
   if (app.got_subcommand("accuracy")) return run_accuracy(arguments, *log);
   if (app.got_subcommand("learning-curve")) return run_learning_curve(arguments, *log);

@@ -1,6 +1,12 @@
 #pragma once
 // Units at the edges: SI inside the library, the user's units in files, on the command line and in reports.
+//
+// A table of common units is always there. A program may add a source of others (units/udunits.hpp), and a
+// store or a bundle brings those that its own inputs came in, so that whoever reads it needs no source.
+//
+// Thread rule: any thread.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,10 +25,19 @@ struct Unit {
   [[nodiscard]] double from_si(double value) const { return (value - offset) / factor; }
 };
 
-/// @throws InputError for an unknown symbol, with the known ones
+/// The reference stays good. @throws InputError for an unknown symbol, with the known ones
 [[nodiscard]] const Unit& unit(std::string_view symbol);
-/// All symbols of the dimension whose SI unit is `si`.
+/// The symbols known so far of the dimension whose SI unit is `si`; at least `si` itself.
 [[nodiscard]] std::vector<std::string> units_of(std::string_view si);
+
+/// Whether every ELROM knows the symbol; a file that uses another carries its factor and offset.
+[[nodiscard]] bool is_common_unit(std::string_view symbol);
+/// Takes in a unit that a file brings, and the SI unit it names. @throws InputError for no symbol, a factor
+/// that is no finite number or 0, and a symbol that means something else already
+void know_unit(const Unit& unit);
+/// Where unit() asks for symbols that are not known yet; empty: nowhere.
+using UnitSource = std::function<std::optional<Unit>(std::string_view symbol)>;
+void set_unit_source(UnitSource source);
 
 /// "primary_air [kg/s]" -> name and symbol; symbol empty when there is no bracket.
 struct NameAndUnit {
