@@ -2,11 +2,12 @@
 // From the cells of the reduced mesh to other cells, as a sparse operator made once: a row of source cells
 // and weights for each target.
 //
-//   conservative  every source cell is split into k^3 parts (by its trilinear map; k grows with the number of
-//                 targets), and each part belongs to the target that it lies in: weights are volumes, values are
-//                 means over what of the reduced mesh lies in a target. Exact where one mesh refines the other.
-//   trilinear     values at the corners of the source's hexahedra (means of the cells around, by volume), taken
-//                 trilinearly at the target's centre.
+//   conservative  every source cell is split into k^3 parts (by its trilinear map; k grows with the number
+//                 of targets), and each part belongs to the target that it lies in: weights are volumes,
+//                 values are means over what of the reduced mesh lies in a target. Exact where one mesh
+//                 refines the other.
+//   trilinear     values at the corners of the source's hexahedra (means of the cells around, by volume),
+//                 taken trilinearly at the target's centre.
 //
 // Both are means: no value leaves the range of its source, and constants stay. A target that has no part of
 // the reduced mesh, or whose centre lies in none of its cells, takes the nearest cell and is counted.
