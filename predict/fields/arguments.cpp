@@ -6,6 +6,7 @@
 #include "elrom/base/version.hpp"
 #include "elrom/cli/cli.hpp"
 #include "elrom/fields/ranges.hpp"
+#include "onto_options.hpp"
 
 namespace elrom::fields {
 namespace {
@@ -39,6 +40,12 @@ nearer to EL3D. Both need all planes and no region; of --fields, solid_volume_fr
 Output: <folder>/<case>.hdf (HDF5: /elrom for scripts, /VTKHDF for ParaView 5.11 and later), .csv, .txt (columns for
 SFW3D) or .ip (Fluent interpolation file). Values are in SI. A file appears whole or not at all.
 
+Another mesh: --onto CASE --format openfoam makes the start of an OpenFOAM run (MPPICFoam v1912) on the case's own mesh:
+<folder>/<case>/<time>, or <folder>/<time> where --output is CASE itself. It holds U, p, alpha and the solids' parcels;
+boundary conditions and all other fields are those of the case's latest time folder. A time folder that is there is left
+alone unless --overwrite says so. --onto with --format ip writes the values at that mesh's cell centres. What the
+interpolation changed of the solids is printed.
+
 Exit status: 0 done, 2 wrong command line, 3 wrong file or input, 4 outside the trained range (--strict), 5 arithmetic.
 )";
 
@@ -56,6 +63,7 @@ std::vector<std::string> format_names(bool text_only) {
 struct Texts {
   std::string planes, region, builds = "mean";
   std::vector<std::string> formats;
+  OntoTexts onto;
 };
 
 void add_input_options(CLI::App& app, Arguments& arguments) {
@@ -158,12 +166,14 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   add_input_options(app, arguments);
   add_selection_options(app, arguments, texts);
   add_output_options(app, arguments, texts);
+  add_onto_options(app, arguments.onto, texts.onto);
   add_physics_options(app, arguments);
   add_run_options(app, arguments, no_verify, no_sync);
   if (const auto status = app.parse(argc, argv)) return {.arguments = {}, .exit_status = status};
   if (!texts.planes.empty()) arguments.planes = parse_planes(texts.planes);
   if (!texts.region.empty()) arguments.region = parse_box(texts.region);
   for (const auto& name : texts.formats) arguments.formats.push_back(format_named(name).format);
+  finish_onto_options(arguments, texts.onto);
   arguments.best_build_only = texts.builds == "best";
   arguments.verify = !no_verify;
   arguments.sync = !no_sync;

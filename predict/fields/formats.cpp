@@ -10,10 +10,11 @@
 namespace elrom::fields {
 namespace {
 
-constexpr std::array<FormatInfo, 4> table{{{Format::hdf, "hdf", nullptr, true},
+constexpr std::array<FormatInfo, 5> table{{{Format::hdf, "hdf", nullptr, true},
                                            {Format::csv, "csv", write_csv, true},
                                            {Format::txt, "txt", write_sfw3d, true},
-                                           {Format::ip, "ip", write_fluent, false}}};
+                                           {Format::ip, "ip", write_fluent, false},
+                                           {Format::openfoam, "openfoam", nullptr, false}}};
 
 }  // namespace
 

@@ -1,6 +1,8 @@
 #include "opened.hpp"
 
 #include "case_list.hpp"
+#include "elrom/base/error.hpp"
+#include "targets.hpp"
 
 namespace elrom::fields {
 namespace {
@@ -10,6 +12,32 @@ Coordinates coordinates_in(const model::BundleReader& bundle, const model::Exten
   if (extent.average()) return coordinates_of(*extent.average());
   if (extent.geometry()) return coordinates_of(*extent.geometry());
   return coordinates_of(bundle.mesh({.with_corners = false, .n_threads = n_threads}));
+}
+
+/// @throws UsageError for a name of no field
+std::map<std::string, std::string> names_of(const Arguments& arguments, const model::BundleReader& bundle) {
+  const auto& known = bundle.info().fields;
+  for (const auto& [name, renamed] : arguments.onto.names)
+    if (std::ranges::find(known, name, &field::FieldInfo::name) == known.end())
+      throw UsageError(field::unknown_field(known, name, "--names"));
+  return arguments.onto.names;
+}
+
+/// A time folder may be a run's result: none is replaced unasked. Seen before the first case is written.
+void expect_free_folders(const Arguments& arguments, const std::vector<field::CaseInputs>& cases) {
+  const Targets targets(arguments);
+  if (targets.in_case() && cases.size() != 1) {
+    throw UsageError({.what = "--output is the OpenFOAM case itself, which one start fits into",
+                      .found = std::to_string(cases.size()) + " cases",
+                      .advice = "choose one by --case NAME"});
+  }
+  for (const auto& inputs : cases) {
+    const auto folder = targets.path(Format::openfoam, inputs);
+    if (arguments.onto.overwrite || !std::filesystem::exists(folder)) continue;
+    throw UsageError({.what = "time folder is there already",
+                      .where = folder.string(),
+                      .advice = "name another by --time, or replace it by --overwrite"});
+  }
 }
 
 }  // namespace
@@ -22,6 +50,10 @@ Opened open(const Arguments& arguments, int n_threads, Timing& timing) {
       bundle, {.planes = arguments.planes, .box = arguments.region, .profile = arguments.profile}, n_threads);
   std::optional<Coordinates> coordinates;
   if (arguments.writes_text()) coordinates = coordinates_in(bundle, extent, n_threads);
+  if (coordinates) coordinates->names = names_of(arguments, bundle);
+  std::unique_ptr<const Onto> onto;
+  if (!arguments.onto.mesh.empty()) onto = std::make_unique<Onto>(arguments, bundle, n_threads);
+  if (arguments.writes(Format::openfoam)) expect_free_folders(arguments, cases);
   std::optional<Physics> physics;
   if (arguments.audit || arguments.conserve) physics.emplace(arguments, bundle, extent.cells());
   timing.open = lap.lap();
@@ -35,8 +67,8 @@ Opened open(const Arguments& arguments, int n_threads, Timing& timing) {
   timing.read = lap.lap();
   model::PredictionFrame frame(predictor, std::move(extent));
   timing.prepare = lap.lap();
-  return {std::move(cases), std::move(physics), std::move(coordinates), std::move(predictor),
-          std::move(frame)};
+  return {std::move(cases), std::move(physics),   std::move(coordinates),
+          std::move(onto),  std::move(predictor), std::move(frame)};
 }
 
 }  // namespace elrom::fields

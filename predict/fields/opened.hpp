@@ -2,6 +2,7 @@
 // What a run of elrom-predict has open before its first case:
 // cases, model, what is written of it, and where it lies.
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "elrom/fields/physics.hpp"
 #include "elrom/fields/text_writer.hpp"
 #include "elrom/model/prediction_file.hpp"
+#include "onto.hpp"
 #include "timing.hpp"
 
 namespace elrom::fields {
@@ -18,6 +20,7 @@ struct Opened {
   std::vector<field::CaseInputs> cases;
   std::optional<Physics> physics;          ///< only with --audit or --conserve
   std::optional<Coordinates> coordinates;  ///< only with text formats
+  std::unique_ptr<const Onto> onto;        ///< only with --onto
   model::Predictor predictor;
   model::PredictionFrame frame;
 };

@@ -50,7 +50,10 @@ class CaseRunner {
   /// @return what is to be written
   model::Prediction compute(const field::CaseInputs& inputs, const model::Assessment& assessment,
                             HdfFile& hdf, Desk& desk, int n_threads) const;
-  void write(Format format, const model::Prediction& prediction, HdfFile& hdf, Desk& desk) const;
+  /// @return what is to be said of it, on lines of its own
+  std::string write(Format format, const model::Prediction& prediction, HdfFile& hdf, Desk& desk) const;
+  void write_text(Format format, const Coordinates& coordinates, const model::Prediction& prediction,
+                  Desk& desk) const;
 
   const Arguments& arguments_;
   const Opened& opened_;
@@ -88,11 +91,29 @@ model::Prediction CaseRunner::compute(const field::CaseInputs& inputs, const mod
   return prediction;
 }
 
-void CaseRunner::write(Format format, const model::Prediction& prediction, HdfFile& hdf, Desk& desk) const {
-  const auto write_text = info_of(format).write;
-  if (write_text == nullptr) return hdf.finish(prediction);
+std::string CaseRunner::write(Format format, const model::Prediction& prediction, HdfFile& hdf,
+                              Desk& desk) const {
+  if (format == Format::openfoam)
+    return opened_.onto->write_time_folder(opened_.frame, prediction,
+                                           targets_.path(format, *prediction.inputs));
+  if (format == Format::hdf) {
+    hdf.finish(prediction);
+  } else if (opened_.onto && format == Format::ip) {
+    auto placed = opened_.onto->place(opened_.frame, prediction);
+    auto there = prediction;
+    there.values = placed.values;
+    write_text(format, opened_.onto->coordinates(), there, desk);
+    return std::move(placed.text);
+  } else {
+    write_text(format, *opened_.coordinates, prediction, desk);
+  }
+  return {};
+}
+
+void CaseRunner::write_text(Format format, const Coordinates& coordinates,
+                            const model::Prediction& prediction, Desk& desk) const {
   desk.text.clear();
-  write_text(opened_.frame, *opened_.coordinates, prediction, desk.text);
+  info_of(format).write(opened_.frame, coordinates, prediction, desk.text);
   if (arguments_.to_standard_output()) {
     write_to_standard_output(desk.text);
   } else {
@@ -119,12 +140,13 @@ void CaseRunner::predict(std::size_t i, Desk& desk, int n_threads) {
   });
   const auto prediction = compute(inputs, assessment, hdf, desk, n_threads);
   desk.compute += lap.lap();
+  std::string said;
   for (const auto format : arguments_.formats) {
-    write(format, prediction, hdf, desk);
+    said += write(format, prediction, hdf, desk);
     if (!arguments_.to_standard_output()) line += " -> " + targets_.path(format, inputs).string();
   }
   desk.write += lap.lap();
-  line += desk.physics.text();
+  line += said + desk.physics.text();
   lines_.add(i, std::move(line));
 }
 

@@ -28,7 +28,15 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
 
 }  // namespace
 
+Targets::Targets(const Arguments& arguments)
+    : folder_(arguments.output), time_(arguments.onto.time), sync_(arguments.sync) {
+  std::error_code not_there;
+  in_case_ = !arguments.onto.mesh.empty() &&
+             std::filesystem::equivalent(folder_, arguments.onto.mesh, not_there) && !not_there;
+}
+
 std::filesystem::path Targets::path(Format format, const field::CaseInputs& inputs) const {
+  if (format == Format::openfoam) return in_case_ ? folder_ / time_ : folder_ / inputs.name / time_;
   return folder_ / (inputs.name + "." + info_of(format).name);
 }
 

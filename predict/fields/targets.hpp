@@ -1,5 +1,5 @@
 #pragma once
-// The files that a run writes: one a case and format, each whole or not at all.
+// The files that a run writes: one a case and format (openfoam: a folder), each whole or not at all.
 
 #include <filesystem>
 #include <memory>
@@ -14,7 +14,9 @@ namespace elrom::fields {
 /// Thread rule: any thread.
 class Targets {
  public:
-  explicit Targets(const Arguments& arguments) : folder_(arguments.output), sync_(arguments.sync) {}
+  explicit Targets(const Arguments& arguments);
+  /// Whether the output folder is the OpenFOAM case that is to be started.
+  [[nodiscard]] bool in_case() const { return in_case_; }
   [[nodiscard]] std::filesystem::path path(Format format, const field::CaseInputs& inputs) const;
   [[nodiscard]] std::unique_ptr<base::AtomicFile> begin(Format format, const field::CaseInputs& inputs) const;
   /// A whole file at once. @throws SystemError
@@ -22,7 +24,8 @@ class Targets {
 
  private:
   std::filesystem::path folder_;
-  bool sync_;
+  std::string time_;  //!< of time folders
+  bool sync_, in_case_;
 };
 
 /// @throws SystemError

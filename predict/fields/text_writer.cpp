@@ -44,27 +44,30 @@ std::vector<Column> columns_of(const model::PredictionFrame& frame, const Coordi
                                const model::Prediction& prediction) {
   std::vector<Column> columns;
   const std::size_t n_axes = coordinates.axes.size();
-  check(coordinates.values.size() == n_axes * frame.n_values(), "text export: coordinates of every value");
+  const std::size_t n_values = coordinates.values.size() / n_axes;
+  check(prediction.values.size() == n_values * frame.fields.size(),
+        "text export: coordinates of every value");
+  const auto of_field = [&](std::span<const float> all, std::size_t i) { return all.data() + i * n_values; };
   for (std::size_t axis = 0; axis < n_axes; ++axis)
     columns.push_back({coordinates.axes[axis], "m", coordinates.values.data() + axis, n_axes});
   for (std::size_t i = 0; i < frame.fields.size(); ++i) {
-    columns.push_back({frame.fields[i].name, frame.fields[i].unit,
-                       prediction.field(prediction.values, frame, i).data(), 1});
+    columns.push_back({frame.fields[i].name, frame.fields[i].unit, of_field(prediction.values, i), 1});
   }
   for (std::size_t i = 0; frame.level && i < frame.fields.size(); ++i) {
-    columns.push_back({frame.fields[i].name + "_half_width", frame.fields[i].unit,
-                       prediction.field(prediction.half_width, frame, i).data(), 1});
+    columns.push_back(
+        {frame.fields[i].name + "_half_width", frame.fields[i].unit, of_field(prediction.half_width, i), 1});
   }
   return columns;
 }
 
-/// Fluent's own names where it has them; solids are named alike (rename them for the phase names of a case).
-std::string fluent_name(const std::string& name) {
+/// Fluent's own names where it has them; solids are named alike (--names gives the phase names of a case).
+std::string fluent_name(const std::string& name, const std::map<std::string, std::string>& chosen) {
   static const std::map<std::string, std::string> names{
       {"gas_velocity_x", "x-velocity"},          {"gas_velocity_y", "y-velocity"},
       {"gas_velocity_z", "z-velocity"},          {"solid_velocity_x", "solids-x-velocity"},
       {"solid_velocity_y", "solids-y-velocity"}, {"solid_velocity_z", "solids-z-velocity"},
       {"solid_volume_fraction", "solids-vof"},   {"solid_diameter", "solids-diameter"}};
+  if (const auto found = chosen.find(name); found != chosen.end()) return found->second;
   const auto known = names.find(name);
   return known != names.end() ? known->second : name;
 }
@@ -136,12 +139,13 @@ void write_fluent(const model::PredictionFrame& frame, const Coordinates& coordi
   constexpr int digits = 9;
   constexpr std::size_t n_coordinates = 3;
   const auto columns = columns_of(frame, coordinates, prediction);
-  text += "3\n3\n" + std::to_string(frame.n_values()) + "\n" +
-          std::to_string(columns.size() - n_coordinates) + "\n";
-  for (std::size_t i = n_coordinates; i < columns.size(); ++i) text += fluent_name(columns[i].name) + "\n";
+  const std::size_t n_values = coordinates.values.size() / n_coordinates;
+  text += "3\n3\n" + std::to_string(n_values) + "\n" + std::to_string(columns.size() - n_coordinates) + "\n";
+  for (std::size_t i = n_coordinates; i < columns.size(); ++i)
+    text += fluent_name(columns[i].name, coordinates.names) + "\n";
   for (const auto& column : columns) {
     text += '(';
-    for (std::size_t row = 0; row < frame.n_values(); ++row) {
+    for (std::size_t row = 0; row < n_values; ++row) {
       add_scientific(text, column.values[row * column.stride], digits, 0);
       text += '\n';
     }

@@ -224,6 +224,9 @@ class Predictor : public std::enable_shared_from_this<Predictor> {
 void write(const Predicted& predicted, const Path& path, const std::string& format) {
   const auto& frame = predicted.owner->frame();
   const auto& info = fields::format_named(format);
+  if (info.format == fields::Format::openfoam)
+    throw UsageError(
+        "format openfoam starts a case of OpenFOAM; use elrom-predict --format openfoam --onto CASE");
   if (info.write == nullptr) return model::write_prediction(frame, predicted.view(), path);
   if (!info.profiles && frame.extent.average())
     throw UsageError(std::string("format ") + info.name + " holds cells; a profile has none");

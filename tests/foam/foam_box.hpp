@@ -7,8 +7,8 @@
 
 namespace elrom::foam {
 
-/// Two hexahedra on each other: widths in x are 2 at z = 0, 4 at z = 1 and 4 at z = 2; depth 1 in y. Volumes 3
-/// and 4 m3. @param below for the files' names
+/// Two hexahedra on each other: widths in x are 2 at z = 0, 4 at z = 1 and 4 at z = 2; depth 1 in y. Volumes
+/// are 3 and 4 m3. @param below for the files' names
 inline void write_two_cells(const test::TemporaryFolder& folder, const std::string& below = "") {
   folder.write(below + "points",
                "12((1 0 0)(3 0 0)(3 1 0)(1 1 0)(0 0 1)(4 0 1)(4 1 1)(0 1 1)(0 0 2)(4 0 2)(4 1 2)(0 1 2))");

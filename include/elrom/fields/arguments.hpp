@@ -9,6 +9,7 @@
 
 #include "elrom/field/planes.hpp"
 #include "elrom/fields/formats.hpp"
+#include "elrom/fields/onto_options.hpp"
 #include "elrom/model/cells.hpp"
 
 namespace elrom::fields {
@@ -24,6 +25,7 @@ struct Arguments {
   std::vector<std::string> fields;
   field::Planes planes;
   std::optional<model::Box> region;
+  OntoOptions onto;
   bool best_build_only = false;
   std::optional<double> level;  ///< of the prediction intervals
   bool profile = false;
@@ -36,7 +38,9 @@ struct Arguments {
   int n_threads = 0;  ///< 0: all
 
   [[nodiscard]] bool to_standard_output() const { return output == "-"; }
-  [[nodiscard]] bool writes_text() const { return formats != std::vector{Format::hdf}; }
+  [[nodiscard]] bool writes_text() const {
+    return std::ranges::any_of(formats, [](Format format) { return info_of(format).write != nullptr; });
+  }
   [[nodiscard]] bool writes(Format format) const {
     return std::find(formats.begin(), formats.end(), format) != formats.end();
   }

@@ -12,12 +12,13 @@
 
 namespace elrom::fields {
 
-enum class Format { hdf, csv, txt, ip };
+enum class Format { hdf, csv, txt, ip, openfoam };
 
 struct FormatInfo {
   Format format;
-  const char* name;  ///< of --format, and the ending of the file
-  /// Adds a whole prediction to a text; nullptr: HDF5, written while it is computed (prediction_file.hpp).
+  const char* name;  ///< of --format, and the ending of the file; openfoam: a folder
+  /// Adds a whole prediction to a text; nullptr: HDF5, written while it is
+  /// computed (prediction_file.hpp), and openfoam, which lies on a mesh of its own.
   void (*write)(const model::PredictionFrame&, const Coordinates&, const model::Prediction&, std::string&);
   bool profiles;  ///< can hold plane averages
 };

@@ -39,9 +39,9 @@ struct StartFields {
 };
 
 /// Writes the time folder `target`: U, p and, of a case with solids, alpha and the cloud. Boundary conditions
-/// and all other fields of cells (k, epsilon ...) are those of `of.fields`; fluxes are left out, as they belong
-/// to another velocity. The folder appears whole; one that is there is replaced. @param note for the headers
-/// @throws SystemError, InputError
+/// and all other fields of cells (k, epsilon ...) are those of `of.fields`; fluxes are left out, as they
+/// belong to another velocity. The folder appears whole; one that is there is replaced.
+/// @param note for the headers @throws SystemError, InputError
 void write_time_folder(const FoamCase& of, const std::filesystem::path& target, const StartFields& start,
                        const std::vector<Parcel>& parcels, double solid_density, const std::string& note);
 

@@ -1,12 +1,12 @@
 #pragma once
 // A Lagrangian cloud drawn from fields of solids, as a run of MPPICFoam (v1912) reads it on its start.
 //
-// Every parcel has the same mass: all solids over the number of parcels. Parcels are dealt out along the cells
-// by systematic sampling, so a cell gets the number that its solids are worth, rounded up or down, and the
-// cloud's mass is that of the field exactly. Places are uniform within the cell; diameter and velocity are
-// the cell's. With a spread S of the whole cloud, that of ln D between cells is s0, and what is missing,
-// s = sqrt(S^2 - s0^2), is spread within cells: D exp(s z - s^2 / 2), z standard normal within +-3, log-normal
-// with the cell's D as the mean. Means are weighted by mass, as parcels weigh alike.
+// Every parcel has the same mass: all solids over the number of parcels. Parcels are dealt out along the
+// cells by systematic sampling, so a cell gets the number that its solids are worth, rounded up or down, and
+// the cloud's mass is that of the field exactly. Places are uniform within the cell; diameter and velocity
+// are the cell's. With a spread S of the whole cloud, that of ln D between cells is s0, and what is missing,
+// s = sqrt(S^2 - s0^2), is spread within cells: D exp(s z - s^2 / 2), z standard normal within +-3,
+// log-normal with the cell's D as the mean. Means are weighted by mass, as parcels weigh alike.
 
 #include <filesystem>
 #include <span>
