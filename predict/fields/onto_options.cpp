@@ -1,10 +1,9 @@
 #include "onto_options.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include "elrom/base/comma_list.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/cli/cli.hpp"
 
 namespace elrom::fields {
 namespace {
