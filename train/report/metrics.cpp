@@ -148,7 +148,7 @@ std::vector<double> noise_at_loads(std::span<const double> measured_loads, std::
 }
 
 double nrmse_without_noise(const ErrorSums& sums, double noise) {
-  return math::nrmse(std::max(0.0, sums.error - noise), sums.departure - noise);
+  return sums.error > noise ? math::nrmse(sums.error - noise, sums.departure - noise) : undefined;
 }
 
 CaseSpan::CaseSpan(const MatrixF& values) {

@@ -19,6 +19,8 @@ enum class ExitStatus : int {
   validity = 4,      ///< a case lies outside the validity domain (--strict)
   numerical = 5,     ///< arithmetic that cannot end in finite numbers
   not_built = 6,     ///< a component that this build left out
+  refused = 7,       ///< a comparison says no: the new model is not promoted
+  nothing_new = 8,   ///< nothing to do: no new cases
   interrupted = 130  ///< Ctrl-C; the work done so far is kept
 };
 
