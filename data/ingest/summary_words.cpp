@@ -70,11 +70,20 @@ std::string furnace_words(const Json& furnace) {
   return text;
 }
 
+// Nothing for cases that state no load.
+std::string loads_of(const Json& load) {
+  if (!load["min"].is_number()) return "";
+  return fmt::format(", loads {} to {}", percent(load["min"]), percent(load["max"]));
+}
+
+std::string load_of(const Json& one) {
+  return one["load"].is_number() ? ": load " + percent(one["load"]) + "," : ":";
+}
+
 std::string store_words(const Json& store) {
   const auto n = store["n_cases"].get<std::size_t>();
-  std::string text =
-      fmt::format("snapshot store {}: {} {}, loads {} to {}\nmesh: ", store["path"].get<std::string>(), n,
-                  n == 1 ? "case" : "cases", percent(store["load"]["min"]), percent(store["load"]["max"]));
+  std::string text = fmt::format("snapshot store {}: {} {}{}\nmesh: ", store["path"].get<std::string>(), n,
+                                 n == 1 ? "case" : "cases", loads_of(store["load"]));
   text += mesh_words(store["mesh"]) + furnace_words(store["furnace"]);
   text += range_table(store["inputs"], "boundary condition") + range_table(store["fields"], "field");
   text += fmt::format("\n{:<30}{:>8}{:>12}  {}\n", "case", "load", "averaged", "from");
@@ -91,8 +100,8 @@ std::string case_words(const Json& one) {
     return shown(box[axis]["min"], 3) + " to " + shown(box[axis]["max"], 3);
   };
   std::string text =
-      fmt::format("case {}: load {}, averaged over {} s, {} cells\n  cell centres: x {} m, y {} m, z {} m\n",
-                  one["name"].get<std::string>(), percent(one["load"]), shown(one["averaging_window_s"]),
+      fmt::format("case {}{} averaged over {} s, {} cells\n  cell centres: x {} m, y {} m, z {} m\n",
+                  one["name"].get<std::string>(), load_of(one), shown(one["averaging_window_s"]),
                   one["n_cells"].get<std::size_t>(), side("x"), side("y"), side("z"));
   text += value_table(one["inputs"]);
   return text + range_table(one["fields"], "field") + "digest " + one["digest"].get<std::string>() + "\n";
@@ -132,9 +141,9 @@ std::string bundle_words(const Json& bundle) {
 }
 
 std::string prediction_words(const Json& one) {
-  std::string text = fmt::format(
-      "prediction of case {}: load {}, {} planes{}\n", one["case"].get<std::string>(), percent(one["load"]),
-      one["n_planes"].get<std::size_t>(), one["profiles"].get<bool>() ? ", averages of each" : "");
+  std::string text = fmt::format("prediction of case {}{} {} planes{}\n", one["case"].get<std::string>(),
+                                 load_of(one), one["n_planes"].get<std::size_t>(),
+                                 one["profiles"].get<bool>() ? ", averages of each" : "");
   text += fmt::format("validity: {} ({})\n", one["validity"].get<std::string>(),
                       one["validity_reason"].get<std::string>());
   text += fmt::format("model of method '{}', {} of the builds, by {}\n", one["method"].get<std::string>(),

@@ -67,6 +67,12 @@ io::SettingsTable<Furnace> make_furnace_table() {
       "cases.held_out", "never trained on: names or patterns", [](auto& f) -> auto& { return f.held_out; });
   t.words(
       "cases.repeats", "those of them that tell the noise", [](auto& f) -> auto& { return f.repeats; });
+  t.word(
+      "words.case", "what one case is called", [](auto& f) -> auto& { return f.words.one; });
+  t.word(
+      "words.cases", "what several are called", [](auto& f) -> auto& { return f.words.many; });
+  t.word(
+      "words.reference", "what computed the cases", [](auto& f) -> auto& { return f.words.truth; });
   t.tables(
       "opening", "where gas enters", [](auto& f) -> auto& { return f.openings; }, opening_table(),
       edge_fault);
@@ -95,6 +101,13 @@ const io::SettingsTable<MirrorDeclaration>& mirror_table() {
   static const auto table = make_mirror_table();
   return table;
 }
+
+std::string Words::case_word(std::size_t n) const {
+  const auto single = one.value_or("case");
+  return n == 1 ? single : many.value_or(single + "s");
+}
+
+std::string Words::reference() const { return truth.value_or("reference"); }
 
 bool Furnace::is_repeat(std::string_view case_name) const {
   return std::ranges::any_of(repeats, [&](const auto& pattern) { return base::matches(case_name, pattern); });

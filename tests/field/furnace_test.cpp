@@ -49,6 +49,18 @@ TEST(Furnace, ReadsWhatTheFileSays) {
   EXPECT_TRUE(furnace.held_out.empty());
 }
 
+TEST(Furnace, GivesReportsTheirWordsAndNeutralOnesWhereItNamesNone) {
+  const auto described = read_furnace(shipped).words, neutral = parse_furnace(least, "f.toml").words;
+  const auto one = parse_furnace(least + "[words]\ncase = \"run\"\n", "f.toml").words;
+
+  EXPECT_EQ(described.case_word(1), "load");
+  EXPECT_EQ(described.case_word(3), "loads");
+  EXPECT_EQ(described.reference(), "EL3D");
+  EXPECT_EQ(neutral.case_word(3), "cases");
+  EXPECT_EQ(one.case_word(3), "runs");
+  EXPECT_EQ(neutral.reference(), "reference");
+}
+
 TEST(Furnace, WrittenTextReadsBackToItself) {
   auto furnace = read_furnace(shipped_file);
   furnace.name = "a \"quoted\"\nname \\";
@@ -61,6 +73,7 @@ TEST(Furnace, WrittenTextReadsBackToItself) {
   EXPECT_DOUBLE_EQ(again.outlet_low_m, furnace.outlet_low_m);
   EXPECT_EQ(again.mirrors.at(1).swap.at(2).second, "return_rear_*");
   EXPECT_EQ(again.mirrors.at(1).axis, 'x');
+  EXPECT_EQ(again.words.reference(), "EL3D");
 }
 
 // Heights as faces of the CFD mesh, 33 layers of 47 m.

@@ -79,6 +79,9 @@ TEST(StoreSummary, DescribesACaseAndAMesh) {
   EXPECT_EQ(one["n_cells"], 6930);
   EXPECT_NEAR(one["inputs"][22]["value"].get<double>(), 263.297, 1e-3);
   EXPECT_THAT(in_words(one), HasSubstr("case load_064: load 64.0 %"));
+  auto without_load = one;
+  without_load["load"] = nullptr;
+  EXPECT_THAT(in_words(without_load), HasSubstr("case load_064: averaged"));
   EXPECT_EQ(mesh["n_cells"], 55440);
   EXPECT_THAT(in_words(mesh), HasSubstr("66 planes x 840 columns"));
 }

@@ -164,11 +164,43 @@ TEST(PowerLaw, ErrorsThatRisePromiseNoGain) {
   EXPECT_DOUBLE_EQ(law.at(60), law.at(40));
 }
 
+TEST(PowerLaw, KnowsWhenThePointsAskForMoreThanItCanGive) {
+  const std::vector<double> cases{8, 16, 32, 64};
+  const auto law_of = [&](double rate) {
+    std::vector<double> errors;
+    for (const double n : cases) errors.push_back(0.2 + 3 * std::pow(n, -rate));
+    return fit_power_law(cases, errors);
+  };
+
+  EXPECT_FALSE(law_of(0.5).at_bound());
+  EXPECT_TRUE(law_of(4).at_bound());
+  EXPECT_TRUE(fit_power_law(cases, {1.0, 0.98, 0.9, 0.6}).at_bound()) << "ever steeper";
+  EXPECT_TRUE(fit_power_law(cases, {0.5, 0.6, 0.7, 0.8}).at_bound());
+}
+
+TEST(LearningCurve, AFitAtItsBoundPromisesNothing) {
+  LearningCurve curve{.study = "s", .method = "linear"};
+  curve.points = {{.cases = 4, .error_mean = 0.5, .error_std = 0.1, .field_error = {{"pressure", 0.5}}}};
+  curve.v1 = curve.v2 = curve.points.front();
+  curve.fit = {0, 1, PowerLaw::least_rate};
+  curve.gain_next_20 = 0.5;  // as older files have it
+
+  base::write_text(file("bound.json"), to_json(curve));
+  const auto read = read_learning_curve(file("bound.json"));
+
+  EXPECT_TRUE(std::isnan(read.gain_next_20));
+  EXPECT_THAT(outlook(read), ::testing::HasSubstr("cannot be told"));
+  EXPECT_THAT(terminal_table(read), ::testing::Not(::testing::HasSubstr("expected to lower")));
+  EXPECT_TRUE(nlohmann::json::parse(to_json(read))["fit"]["at_bound"]);
+}
+
 TEST(LearningCurve, JsonReadsBackTheSame) {
   LearningCurve curve{.study = "s", .method = "linear"};
   curve.points = {{.cases = 4, .error_mean = 0.5, .error_std = 0.1, .field_error = {{"pressure", 0.5}}}};
   curve.v1 = curve.v2 = curve.points.front();
+  curve.fit = {0.1, 1, 0.5};
   curve.gain_next_20 = 0.03;
+  curve.small = true;
   base::write_text(file("curve.json"), to_json(curve));
 
   const auto read = read_learning_curve(file("curve.json"));
@@ -176,6 +208,7 @@ TEST(LearningCurve, JsonReadsBackTheSame) {
   EXPECT_EQ(read.method, "linear");
   EXPECT_EQ(read.points.front().field_error.at("pressure"), 0.5);
   EXPECT_EQ(read.gain_next_20, 0.03);
+  EXPECT_TRUE(read.small);
 }
 
 }  // namespace

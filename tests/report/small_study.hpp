@@ -2,6 +2,7 @@
 // A trained study of a tiny made-up furnace: fields are smooth functions of two inputs and of place, so that
 // methods can learn them, and the repeated runs differ by a known noise.
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -21,19 +22,37 @@ class SmallStudy {
  public:
   static constexpr std::size_t n_training = 12;
 
-  /// @param folder made anew @param main_method answers for every field of model.elrom
-  explicit SmallStudy(std::filesystem::path folder, const std::string& main_method = "linear")
-      : folder_(std::move(folder)) {
+  struct Options {
+    std::string main_method = "linear";  ///< answers for every field of model.elrom
+    std::size_t n_held_out = 2;          ///< at most six
+    bool described = true;               ///< has a furnace description, with words of its own
+    bool with_loads = true;
+  };
+
+  /// @param folder made anew
+  explicit SmallStudy(std::filesystem::path folder) : SmallStudy(std::move(folder), Options()) {}
+  SmallStudy(std::filesystem::path folder, Options options)
+      : folder_(std::move(folder)), options_(std::move(options)) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_ / "peers");
     write_store();
-    write_models(main_method);
+    write_models();
     base::write_text(folder_ / "timing.json",
                      R"({"kind": "elrom-timing", "format": [1, 0],
                          "stages": {"model": {"seconds": 3}}, "methods": {"auto": 2.5, "nearest": 0.25}})");
   }
   ~SmallStudy() { std::filesystem::remove_all(folder_); }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+  /// A bundle trained on the cases whose names match the patterns.
+  void train(const std::string& method, const std::vector<std::string>& patterns,
+             const std::filesystem::path& path) const {
+    const auto store = field::SnapshotStore::open(folder_ / "snapshots.h5");
+    std::vector<std::size_t> rows;
+    for (const auto& pattern : patterns)
+      for (const auto row : store.find(pattern)) rows.push_back(row);
+    write_bundle(store, case_set(store, rows), rows, method, path, false);
+  }
 
  private:
   static std::vector<field::FieldInfo> fields() {
@@ -51,24 +70,26 @@ class SmallStudy {
                                  .packing_limit = 0.65,
                                  .held_out = {"load_*", "rep*"},
                                  .repeats = {"rep*"},
-                                 .openings = {{.inputs = "primary_air"}}};
-    field::SnapshotWriter writer(folder_ / "snapshots.h5", mesh, schema(), fields(), furnace);
+                                 .openings = {{.inputs = "primary_air"}},
+                                 .words = {"run", "runs", "LES"}};
+    const auto described = options_.described ? std::optional(furnace) : std::nullopt;
+    field::SnapshotWriter writer(folder_ / "snapshots.h5", mesh, schema(), fields(), described);
     base::Random random{base::Seed(3)};
-    for (std::size_t i = 0; i < n_training + 2; ++i) {
-      const double load = 0.4 + 0.05 * static_cast<double>(i);
-      const auto name = i < n_training ? "train_" + std::to_string(i) : "load_" + std::to_string(i);
-      add_case(writer, mesh, name,
-               i < n_training ? load : 0.3 + 0.2 * static_cast<double>(i - n_training + 1), random);
-    }
-    for (int i = 1; i <= 2; ++i)
-      add_case(writer, mesh, "rep" + std::to_string(i), 0.5, random);  // of the first load
+    constexpr std::array held_out{0.52, 0.72, 0.43, 0.63, 0.83, 0.91};  // none is a training case's
+    for (std::size_t i = 0; i < n_training; ++i)
+      add_case(writer, mesh, "train_" + std::to_string(i), 0.4 + 0.05 * static_cast<double>(i), random);
+    for (std::size_t i = 0; i < options_.n_held_out; ++i)
+      add_case(writer, mesh, "load_" + std::to_string(n_training + i), held_out[i], random);
+    for (int i = 1; i <= 2; ++i) add_case(writer, mesh, "rep" + std::to_string(i), held_out[0], random);
     writer.commit();
   }
 
-  static void add_case(field::SnapshotWriter& writer, const field::Mesh& mesh, const std::string& name,
-                       double load, base::Random& random) {
+  void add_case(field::SnapshotWriter& writer, const field::Mesh& mesh, const std::string& name, double load,
+                base::Random& random) const {
     field::Snapshot snapshot;
-    snapshot.record.inputs = {.name = name, .load = load, .values = {200 * load, 900 + 300 * load * load}};
+    snapshot.record.inputs = {.name = name,
+                              .load = options_.with_loads ? load : std::nan(""),
+                              .values = {200 * load, 900 + 300 * load * load}};
     snapshot.record.source = name + ".h5";
     snapshot.record.source_digest = name;
     snapshot.fields.resize(3, static_cast<Eigen::Index>(mesh.n_cells()));
@@ -82,7 +103,16 @@ class SmallStudy {
     writer.add(snapshot);
   }
 
-  void write_models(const std::string& main_method) {
+  static field::CaseSet case_set(const field::SnapshotStore& store, const std::vector<std::size_t>& rows) {
+    field::CaseSet cases{store.mesh(), store.schema(), {}, {}, store.inputs(rows), {}};
+    for (const auto row : rows) {
+      cases.names.push_back(store.cases()[row].inputs.name);
+      cases.loads.push_back(store.cases()[row].inputs.load);
+    }
+    return cases;
+  }
+
+  void write_models() const {
     const auto store = field::SnapshotStore::open(folder_ / "snapshots.h5");
     study::SplitNames split;
     std::vector<std::size_t> rows;
@@ -93,12 +123,8 @@ class SmallStudy {
       (training ? split.train : split.held_out).push_back(name);
     }
     study::write_split(folder_ / "split.json", split);
-    field::CaseSet cases{store.mesh(), store.schema(), {}, {}, store.inputs(rows), {}};
-    for (const auto row : rows) {
-      cases.names.push_back(store.cases()[row].inputs.name);
-      cases.loads.push_back(store.cases()[row].inputs.load);
-    }
-    write_bundle(store, cases, rows, main_method, folder_ / "model.elrom", true);
+    const auto cases = case_set(store, rows);
+    write_bundle(store, cases, rows, options_.main_method, folder_ / "model.elrom", true);
     for (const std::string peer : {"nearest", "linear"})
       write_bundle(store, cases, rows, peer, folder_ / "peers" / (peer + ".elrom"), false);
   }
@@ -132,6 +158,7 @@ class SmallStudy {
   }
 
   std::filesystem::path folder_;
+  Options options_;
 };
 
 }  // namespace elrom::report

@@ -1,5 +1,5 @@
-// elrom-report: how good a study's model is, what more cases would
-// buy, and what accuracy costs; how good collision models are.
+// elrom-report: how good a study's model is, which of two is better, what more cases would buy,
+// and what accuracy costs; how good collision models are.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -15,6 +15,7 @@
 #include "elrom/cli/cli.hpp"
 #include "elrom/report/accuracy.hpp"
 #include "elrom/report/collisions.hpp"
+#include "elrom/report/compare.hpp"
 #include "elrom/report/cost.hpp"
 #include "elrom/report/learning_curve.hpp"
 #include "elrom/report/page.hpp"
@@ -25,8 +26,8 @@ using namespace elrom;
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::vector<std::string> studies, against, fields, models;
-  std::string store, json, csv, html, method, collisions;
+  std::vector<std::string> studies, against, fields, models, cases;
+  std::string store, json, csv, html, method, collisions, a, b;
   report::Reference reference;
   int threads = 0, points = 5, repeats = 3;
   std::uint64_t seed = 1;
@@ -67,6 +68,20 @@ int run_accuracy(const Arguments& arguments, Log& log) {
   return 0;
 }
 
+int run_compare(const Arguments& arguments, Log& log) {
+  const report::CompareOptions options{.a = arguments.a,
+                                       .b = arguments.b,
+                                       .cases = arguments.cases,
+                                       .store = arguments.store_path(),
+                                       .n_threads = arguments.n_threads(),
+                                       .figures = !arguments.html.empty()};
+  const auto comparison = report::compare(options, log, base::interrupt_token());
+  fmt::print("{}", report::terminal_table(comparison));
+  if (!arguments.json.empty()) write(arguments.json, report::to_json(comparison), log);
+  if (!arguments.html.empty()) write(arguments.html, report::html_page(comparison), log);
+  return static_cast<int>(comparison.b_is_worse() ? ExitStatus::refused : ExitStatus::ok);
+}
+
 int run_learning_curve(const Arguments& arguments, Log& log) {
   const auto study = fs::path(arguments.studies.front());
   report::LearningCurveOptions options{.study = study,
@@ -81,10 +96,11 @@ int run_learning_curve(const Arguments& arguments, Log& log) {
     options.n_points = 3;
     options.n_repeats = 1;
   }
-  const auto curve = report::learning_curve(options, log, base::interrupt_token());
+  auto curve = report::learning_curve(options, log, base::interrupt_token());
+  curve.small = arguments.small;
   fmt::print("{}", arguments.v1_v2 ? report::v1_v2_table(curve) : report::terminal_table(curve));
-  write(arguments.json.empty() ? study / "learning-curve.json" : fs::path(arguments.json),
-        report::to_json(curve), log);
+  const auto usual = arguments.small ? "learning-curve-small.json" : "learning-curve.json";
+  write(arguments.json.empty() ? study / usual : fs::path(arguments.json), report::to_json(curve), log);
   return 0;
 }
 
@@ -147,12 +163,27 @@ void add_accuracy(CLI::App& app, Arguments& arguments) {
   add_common(command, arguments);
 }
 
+void add_compare(CLI::App& app, Arguments& arguments) {
+  auto& command = *app.add_subcommand(
+      "compare", "Is B better than A? Field by field on the same cases; exit status 7 where B is worse");
+  command.add_option("A", arguments.a, "a bundle (.elrom) or a trained study")->required();
+  command.add_option("B", arguments.b, "another")->required();
+  base::comma_list(command.add_option("--cases", arguments.cases,
+                                      "cases to compare on, names or patterns, separated by commas; default: "
+                                      "the held-out cases of A's study"));
+  command.add_option("--json", arguments.json, "write all figures as JSON");
+  command.add_option("--html", arguments.html, "write the page with cuts: one file that opens offline");
+  add_common(command, arguments);
+}
+
 void add_learning_curve(CLI::App& app, Arguments& arguments) {
   auto& command = *app.add_subcommand(
       "learning-curve", "What more cases buy: the method fitted anew on subsets of its training cases");
   command.add_option("study", arguments.studies, "a trained study directory")->required()->expected(1);
-  command.add_option("--json", arguments.json,
-                     "where to write; default STUDY/learning-curve.json, which the page then shows");
+  command.add_option(
+      "--json", arguments.json,
+      "where to write; default STUDY/learning-curve.json, which the page then shows; with --small "
+      "STUDY/learning-curve-small.json, which it shows where there is no other");
   command.add_option("--method", arguments.method,
                      "method to fit; default: the one that answers for most fields of the study");
   base::comma_list(command.add_option("--fields", arguments.fields,
@@ -204,18 +235,20 @@ void add_collisions(CLI::App& app, Arguments& arguments) {
 
 int run(int argc, char** argv) {
   cli::App app(R"(Reports on trained ELROM studies and collision models.
-Exit status: 2 usage, 3 input, 5 numerical, 130 interrupted.)",
+Exit status: 2 usage, 3 input, 5 numerical, 7 B is worse than A (compare), 130 interrupted.)",
                "elrom-report");
   app.set_version_flag("--version", program_version());
   app.require_subcommand(1);
   Arguments arguments;
   add_accuracy(app, arguments);
+  add_compare(app, arguments);
   add_learning_curve(app, arguments);
   add_cost(app, arguments);
   add_collisions(app, arguments);
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto log = make_console_log(arguments.quiet ? Level::warning : Level::info);
   if (app.got_subcommand("accuracy")) return run_accuracy(arguments, *log);
+  if (app.got_subcommand("compare")) return run_compare(arguments, *log);
   if (app.got_subcommand("learning-curve")) return run_learning_curve(arguments, *log);
   if (app.got_subcommand("collisions")) return run_collisions(arguments, *log);
   return run_cost(arguments, *log);

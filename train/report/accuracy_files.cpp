@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,10 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
+
+Json interval_node(const std::optional<math::LikelyRange>& interval) {
+  return interval ? Json{number(interval->low), number(interval->high)} : Json();
+}
 
 Json scores(const ErrorSums& sums) {
   return {{"nrmse", number(sums.nrmse())},
@@ -33,6 +38,7 @@ Json method_on_field(const AccuracyReport& report, const FieldAccuracy& field, s
   if (!method.detail.empty()) node["detail"] = method.detail;
   node.update(scores(method.pooled));
   node["nrmse_without_noise"] = number(field.nrmse_without_noise(m));
+  node["below_noise"] = field.below_noise(m);
   for (std::size_t i = 0; i < report.cases.size(); ++i) {
     Json of_case{{"case", report.cases[i].name}};
     of_case.update(scores(method.cases[i]));
@@ -66,7 +72,12 @@ Json field_node(const AccuracyReport& report, const FieldAccuracy& field) {
   Json node{{"field", field.info.name}, {"unit", field.info.unit}, {"methods", Json::array()}};
   for (std::size_t m = 0; m < report.methods.size(); ++m)
     node["methods"].push_back(method_on_field(report, field, m));
-  if (const auto best = report.best_peer(field)) node["best_peer"] = report.methods[*best].file.name;
+  if (const auto best = report.best_peer(field)) {
+    const auto gain = report.gain(field);
+    node["best_peer"] = report.methods[*best].file.name;
+    node["gain_over_best_peer"] = number(gain.value);
+    node["gain_interval"] = interval_node(gain.interval);
+  }
   Json candidates = Json::array();
   for (const auto& candidate : field.choice.candidates)
     candidates.push_back(
@@ -104,10 +115,15 @@ Json case_node(const ScoredCase& scored) {
   return node;
 }
 
-Json method_node(const MethodSummary& method) {
+Json method_node(const AccuracyReport& report, std::size_t m) {
+  const auto& method = report.methods[m];
   return {{"method", method.file.name},
           {"bundle_digest", method.digest},
           {"simple_peer", method.file.is_peer},
+          {"training_cases", method.training_cases.size()},
+          {"other_training_cases", method.other_cases},
+          {"leaked_cases", method.leaked_cases},
+          {"fields_better_than_study", report.fields_better(m).size()},
           {"mean_nrmse", number(method.mean_nrmse)},
           {"mean_nrmse_without_noise", number(method.mean_nrmse_without_noise)},
           {"train_seconds", number(method.file.train_seconds)},
@@ -115,10 +131,22 @@ Json method_node(const MethodSummary& method) {
           {"predict_ms", method.predict_ms}};
 }
 
+// Held-out cases that any of the methods was trained on.
+std::vector<std::string> leaked_cases(const AccuracyReport& report) {
+  std::vector<std::string> leaked;
+  for (const auto& scored : report.cases)
+    if (std::ranges::any_of(report.methods, [&](const MethodSummary& method) {
+          return std::ranges::find(method.leaked_cases, scored.name) != method.leaked_cases.end();
+        }))
+      leaked.push_back(scored.name);
+  return leaked;
+}
+
 }  // namespace
 
 std::string to_json(const AccuracyReport& report) {
   auto root = io::json_head<Json>(io::kinds::accuracy);
+  const auto gain = report.gain();
   root.update({{"created", report.created},
                {"study", report.study.name},
                {"headline", headline(report)},
@@ -126,15 +154,20 @@ std::string to_json(const AccuracyReport& report) {
                {"planes", report.n_planes},
                {"columns", report.n_columns},
                {"mean_nrmse", number(report.methods.front().mean_nrmse)},
-               {"gain_over_best_single_peer", number(report.gain())},
+               {"gain_over_best_single_peer", number(gain.value)},
+               {"gain_interval", interval_node(gain.interval)},
+               {"gain_interval_level", gain_level},
                {"gain_without_noise", number(report.gain_without_noise())},
                {"fields_at_or_below_every_simple_peer", report.fields_won()},
+               {"fields_at_or_below_every_method", report.fields_won_against_all()},
+               {"fields_below_noise", report.fields_below_noise()},
+               {"leaked_cases", leaked_cases(report)},
                {"repeated_runs", report.repeats}});
   if (const auto best = report.best_peer()) root["best_single_peer"] = report.methods[*best].file.name;
   for (std::size_t k = 0; k < coverage_levels.size(); ++k)
     root["coverage"].push_back(
         {{"promised", coverage_levels[k]}, {"measured", number(report.mean_coverage(k))}});
-  for (const auto& method : report.methods) root["methods"].push_back(method_node(method));
+  for (std::size_t m = 0; m < report.methods.size(); ++m) root["methods"].push_back(method_node(report, m));
   for (const auto& field : report.fields) root["fields"].push_back(field_node(report, field));
   for (const auto& scored : report.cases) root["cases"].push_back(case_node(scored));
   root["stage_seconds"] = report.study.stage_seconds;

@@ -23,17 +23,26 @@ struct Ink {
   [[nodiscard]] std::string faint(const std::string& text) const { return paint("2", text); }
 };
 
-constexpr std::size_t name_width = 24, column_width = 10;
+constexpr std::size_t name_width = 24, narrow = 10;
+constexpr std::string_view gain_heading = "   gain over the best peer";
 
-std::string rule(std::size_t n_columns) {
+// Wider where a method is marked.
+std::size_t column_width(const AccuracyReport& report) {
+  std::size_t longest = narrow - 2;
+  for (std::size_t m = 0; m < report.methods.size(); ++m)
+    for (const auto& mark : report.marks(m)) longest = std::max(longest, mark.size());
+  return longest + 2;
+}
+
+std::string rule(std::size_t width) {
   std::string line = "  ";
-  for (std::size_t i = 0; i < name_width + column_width * n_columns; ++i) line += "─";
+  for (std::size_t i = 0; i < name_width + width; ++i) line += "─";
   return line + '\n';
 }
 
 // Long labels take two lines: "POD + GP" over "per mode".
 std::array<std::string, 2> heading_lines(const std::string& label) {
-  constexpr std::size_t most = column_width - 1;
+  constexpr std::size_t most = narrow - 1;
   if (label.size() <= most) return {"", label};
   const auto cut = label.rfind(' ', most);
   if (cut == std::string::npos) return {"", label.substr(0, most)};
@@ -47,24 +56,32 @@ std::size_t best_method(const std::vector<double>& scores) {
   return best;
 }
 
-std::string row(const std::string& name, const std::vector<double>& scores, const Ink& ink,
+std::string row(const std::string& name, const std::vector<double>& scores, std::size_t width, const Ink& ink,
                 const std::string& note = "") {
   const auto best = best_method(scores);
   auto line = fmt::format("  {:<{}}", name, name_width);
   for (std::size_t m = 0; m < scores.size(); ++m) {
-    const auto text = fmt::format("{:>{}}", score_text(scores[m]) + (m == best ? "*" : " "), column_width);
+    const auto text = fmt::format("{:>{}}", score_text(scores[m]) + (m == best ? "*" : " "), width);
     line += m == best ? ink.good(text) : text;
   }
   return line + (note.empty() ? "" : "   " + ink.faint(note)) + '\n';
 }
 
 std::string heading(const AccuracyReport& report, const Ink& ink) {
-  std::array<std::string, 2> lines{std::string(name_width + 2, ' '),
-                                   fmt::format("  {:<{}}", "field", name_width)};
-  for (const auto& method : report.methods) {
-    const auto parts = heading_lines(method_label(method.file.name));
-    for (std::size_t k = 0; k < 2; ++k) lines[k] += fmt::format("{:>{}} ", parts[k], column_width - 1);
+  std::array<std::string, 4> lines{"", fmt::format("  {:<{}}", "field", name_width), "", ""};
+  for (auto& line : lines) line.resize(name_width + 2, ' ');
+  const auto width = column_width(report);
+  for (std::size_t m = 0; m < report.methods.size(); ++m) {
+    const auto parts = heading_lines(method_label(report.methods[m].file.name));
+    const auto marks = report.marks(m);
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      lines[k] += fmt::format("{:>{}} ",
+                              k < 2                  ? parts[k]
+                              : k - 2 < marks.size() ? marks[k - 2]
+                                                     : "",
+                              width - 1);
   }
+  lines[1] += report.best_peer() ? gain_heading : "";
   std::string text;
   for (const auto& line : lines)
     if (line.find_first_not_of(' ') != std::string::npos) text += ink.strong(line) + '\n';
@@ -86,22 +103,6 @@ std::string coverage_line(const AccuracyReport& report) {
   return line.empty() ? "" : "  coverage promised -> measured: " + line + '\n';
 }
 
-// Fields where a simple peer is better: with figures while they are few, by name otherwise.
-std::string losses(const AccuracyReport& report) {
-  constexpr std::size_t most_with_figures = 2;
-  const std::size_t n_lost = report.fields.size() - report.fields_won();
-  std::vector<std::string> lost;
-  for (const auto& field : report.fields) {
-    const auto best = report.best_peer(field);
-    if (!best || field.nrmse(0) <= field.nrmse(*best)) continue;
-    lost.push_back(field_label(field.info.name));
-    if (n_lost <= most_with_figures)
-      lost.back() += fmt::format(" ({} {} against {})", method_label(report.methods[*best].file.name),
-                                 score_text(field.nrmse(*best)), score_text(field.nrmse(0)));
-  }
-  return base::join(lost, ", ");
-}
-
 std::string validity_line(const AccuracyReport& report) {
   std::string text;
   for (const auto& scored : report.cases)
@@ -112,60 +113,68 @@ std::string validity_line(const AccuracyReport& report) {
   return text;
 }
 
-}  // namespace
-
-std::string headline(const AccuracyReport& report) {
-  auto text =
-      fmt::format("{} held-out {}: mean NRMSE {} over {} {}", report.cases.size(),
-                  report.cases.size() == 1 ? "load" : "loads", score_text(report.methods.front().mean_nrmse),
-                  report.fields.size(), report.fields.size() == 1 ? "field" : "fields");
-  const auto best = report.best_peer();
-  if (!best) return text + ", with no peer beside it.";
-  const double gain = report.gain();
-  text += fmt::format(", {} {} the best single peer ({}, {})", percent_text(std::abs(gain)),
-                      gain >= 0 ? "below" : "above", method_label(report.methods[*best].file.name),
-                      score_text(report.methods[*best].mean_nrmse));
-  const auto lost = losses(report);
-  return text + (lost.empty() ? "; no peer is better in any field." : "; a peer is better in " + lost + ".");
+std::string field_note(const AccuracyReport& report, const FieldAccuracy& field) {
+  const auto& own = field.methods[0];
+  auto note = report.best_peer() ? fmt::format("{:<22}", gain_text(report.gain(field))) : std::string();
+  if (!own.kind.empty() && own.kind != report.methods[0].file.name)
+    note += (note.empty() ? "by " : " by ") + method_label(own.kind);
+  return note;
 }
+
+// What the noise of the truth leaves to say; nothing is claimed of an error that lies below it.
+std::string noise_line(const AccuracyReport& report) {
+  double floor = 0;
+  for (const auto& field : report.fields)
+    floor += field.noise_nrmse.value_or(0) / static_cast<double>(report.fields.size());
+  auto text = fmt::format(
+      "  The truth's own noise (repeated runs) is {} of it, about the least that any model can reach",
+      score_text(floor));
+  if (const double gain = report.gain_without_noise(); std::isfinite(gain))
+    text += fmt::format("; with it taken off, ELROM is {} {} the best peer", percent_text(std::abs(gain)),
+                        gain >= 0 ? "below" : "above");
+  if (const auto below = report.fields_below_noise(); below > 0)
+    text += fmt::format(
+        ".\n  ELROM's error is below the measured noise in {} of {} fields, so no gain with noise taken off is "
+        "claimed",
+        below, report.fields.size());
+  return text + ".\n";
+}
+
+}  // namespace
 
 std::string terminal_table(const AccuracyReport& report, bool colour) {
   const Ink ink{colour};
+  const auto width = column_width(report);
   auto text =
       "\n  " + ink.strong("Error on held-out cases") +
       ink.faint(fmt::format("   NRMSE: 0 is perfect, 1 is predicting the mean of the {} training cases",
                             report.n_training)) +
       "\n\n";
-  text += heading(report, ink) + ink.faint(rule(report.methods.size()));
+  const auto line = ink.faint(rule(width * report.methods.size()));
+  text += heading(report, ink) + line;
   for (const auto& field : report.fields)
-    text += row(field_label(field.info.name), field_scores(report, field), ink,
-                field.methods[0].kind.empty() || field.methods[0].kind == report.methods[0].file.name
-                    ? ""
-                    : "by " + method_label(field.methods[0].kind));
-  text += ink.faint(rule(report.methods.size()));
-  std::vector<double> means, clean, times;
+    text +=
+        row(field_label(field.info.name), field_scores(report, field), width, ink, field_note(report, field));
+  text += line;
+  std::vector<double> means, clean;
   for (const auto& method : report.methods) {
     means.push_back(method.mean_nrmse);
     clean.push_back(method.mean_nrmse_without_noise);
   }
-  text += row("mean", means, ink);
-  if (!report.repeats.empty()) text += row("mean, noise taken off", clean, ink);
+  text += row("mean", means, width, ink, report.best_peer() ? gain_text(report.gain()) : "");
+  if (const auto n = report.fields_above_noise(); n == report.fields.size())
+    text += row("mean, noise taken off", clean, width, ink);
+  else if (n > 0)
+    text += row(fmt::format("{} of {}, noise taken off", n, report.fields.size()), clean, width, ink,
+                "fields where no method is below the noise");
   text += "\n  " + ink.strong(headline(report)) + '\n';
-  if (!report.repeats.empty()) {
-    double floor = 0;
-    for (const auto& field : report.fields)
-      floor += field.noise_nrmse.value_or(0) / static_cast<double>(report.fields.size());
-    text +=
-        fmt::format(
-            "  The truth's own noise (repeated runs) is {} of it, about the least that any model can reach",
-            score_text(floor)) +
-        (std::isfinite(report.gain_without_noise())
-             ? fmt::format("; with it taken off, ELROM is {} {} the best peer.\n",
-                           percent_text(std::abs(report.gain_without_noise())),
-                           report.gain_without_noise() >= 0 ? "below" : "above")
-             : ".\n");
-  }
-  return text + coverage_line(report) + validity_line(report) + ink.faint("  * best in its row") + '\n';
+  if (!report.repeats.empty()) text += noise_line(report);
+  return text + coverage_line(report) + validity_line(report) + ink.faint("  * best in its row") +
+         (report.best_peer()
+              ? ink.faint(fmt::format("; gains with their {:.0f} % interval over the {} {}", 100 * gain_level,
+                                      report.cases.size(), report.words.case_word(report.cases.size())))
+              : "") +
+         '\n';
 }
 
 }  // namespace elrom::report

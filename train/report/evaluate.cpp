@@ -14,6 +14,7 @@
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/report/accuracy.hpp"
+#include "evaluate_bundles.hpp"
 #include "evaluate_field.hpp"
 
 namespace elrom::report {
@@ -61,6 +62,35 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+// By name, or by the boundary conditions of a training case under another name.
+std::vector<std::string> leaked_cases(const model::BundleReader& bundle, const field::SnapshotStore& store,
+                                      const HeldOutCases& cases, const std::vector<std::string>& trained) {
+  constexpr double same_inputs = 1e-9;  // distance in standardised inputs
+  const auto guard = bundle.guard();
+  std::vector<std::string> leaked;
+  for (std::size_t i = 0; i < cases.scored.size(); ++i) {
+    const auto& name = store.cases()[cases.scored[i]].inputs.name;
+    const auto nearest = guard.assess(case_inputs(cases, i)).nearest;
+    if (std::ranges::find(trained, name) != trained.end() ||
+        (!nearest.empty() && nearest.front().distance < same_inputs))
+      leaked.push_back(name);
+  }
+  return leaked;
+}
+
+// The study's split tells what is usual, or else its model.
+void mark_other_cases(AccuracyReport& report) {
+  const auto sorted = [](std::vector<std::string> names) {
+    std::ranges::sort(names);
+    return names;
+  };
+  const auto split = sorted(report.study.building);
+  const auto has_split = [&](const MethodSummary& m) { return sorted(m.training_cases) == split; };
+  const auto usual =
+      std::ranges::any_of(report.methods, has_split) ? split : sorted(report.methods.front().training_cases);
+  for (auto& method : report.methods) method.other_cases = sorted(method.training_cases) != usual;
+}
+
 // Opening and predicting all fields of one case, as a caller of the library would; the median of a few.
 MethodSummary summarise(const BundleFile& file, const field::SnapshotStore& store, const HeldOutCases& cases,
                         int n_threads) {
@@ -70,6 +100,8 @@ MethodSummary summarise(const BundleFile& file, const field::SnapshotStore& stor
   summary.open_ms = milliseconds_since(opened);
   check_bundle(predictor.bundle(), store);
   summary.digest = predictor.bundle().digest();
+  summary.training_cases = predictor.bundle().info().cases;
+  summary.leaked_cases = leaked_cases(predictor.bundle(), store, cases, summary.training_cases);
   std::vector<float> values(predictor.size());
   model::Predictor::Scratch scratch;
   std::vector<double> times;
@@ -117,15 +149,15 @@ std::vector<ScoredCase> describe_cases(const field::SnapshotStore& store, const 
   return described;
 }
 
-// Fields whose truth departs from the mean by noise alone have no score with the noise taken off; they are
-// left out.
+// An error below the noise has no score with the noise taken off, nor has a truth that departs from the mean
+// by noise alone; such a field is left out for every method alike.
 void average_over_fields(AccuracyReport& report) {
   for (std::size_t m = 0; m < report.methods.size(); ++m) {
     double sum = 0, clean = 0;
     int n_clean = 0;
     for (const auto& field : report.fields) {
       sum += field.nrmse(m);
-      if (!std::isfinite(field.nrmse_without_noise(0))) continue;
+      if (!field.above_noise()) continue;
       clean += field.nrmse_without_noise(m);
       ++n_clean;
     }
@@ -142,9 +174,18 @@ std::string now_utc() {
 }  // namespace
 
 AccuracyReport evaluate(const AccuracyOptions& options, Log& log, const std::stop_token& stop) {
-  AccuracyReport report{.study = open_study(options.study, options.store), .created = now_utc()};
+  auto study = open_study(options.study, options.store);
+  for (const auto& other : options.against) study.bundles.push_back(open_other(other));
+  return evaluate_bundles(std::move(study), {options.n_threads, options.figures}, log, stop);
+}
+
+AccuracyReport evaluate_bundles(StudyFiles study, const EvaluateOptions& options, Log& log,
+                                const std::stop_token& stop) {
+  AccuracyReport report{.study = std::move(study), .created = now_utc()};
   const auto store = field::SnapshotStore::open(report.study.store);
-  if (!store.furnace())
+  if (store.furnace())
+    report.words = store.furnace()->words;
+  else
     log.warning("no gas balance, and no case known as a repeated run: the store has no furnace description");
   const auto cases = hold_out_cases(store, report.study);
   report.n_training = cases.building.size();
@@ -152,10 +193,10 @@ AccuracyReport evaluate(const AccuracyOptions& options, Log& log, const std::sto
   report.n_columns = store.mesh().n_columns;
   for (const auto& set : cases.repeats)
     for (const std::size_t row : set) report.repeats.push_back(store.cases()[row].inputs.name);
-  auto bundles = report.study.bundles;
-  for (const auto& other : options.against) bundles.push_back(open_other(other));
+  const auto& bundles = report.study.bundles;
   for (const auto& bundle : bundles)
     report.methods.push_back(summarise(bundle, store, cases, options.n_threads));
+  mark_other_cases(report);
   report.cases = describe_cases(store, cases, bundles.front(), options.n_threads);
 
   const auto fields = model::BundleReader(bundles.front().path).info().fields;
@@ -184,11 +225,6 @@ double FieldAccuracy::nrmse(std::size_t method) const {
 
 double FieldAccuracy::noise_energy() const { return std::accumulate(noise.begin(), noise.end(), 0.0); }
 
-double FieldAccuracy::nrmse_without_noise(std::size_t method) const {
-  if (noise.empty() || !methods[method].available) return undefined;
-  return report::nrmse_without_noise(methods[method].pooled, noise_energy());
-}
-
 std::optional<std::size_t> AccuracyReport::best_peer() const {
   std::optional<std::size_t> best;
   for (std::size_t m = 1; m < methods.size(); ++m)
@@ -205,24 +241,6 @@ std::optional<std::size_t> AccuracyReport::best_peer(const FieldAccuracy& field)
         (!best || field.nrmse(m) < field.nrmse(*best)))
       best = m;
   return best;
-}
-
-double AccuracyReport::gain() const {
-  const auto best = best_peer();
-  return best ? 1 - methods[0].mean_nrmse / methods[*best].mean_nrmse : undefined;
-}
-
-double AccuracyReport::gain_without_noise() const {
-  const auto best = best_peer();
-  return best ? 1 - methods[0].mean_nrmse_without_noise / methods[*best].mean_nrmse_without_noise : undefined;
-}
-
-std::size_t AccuracyReport::fields_won() const {
-  return static_cast<std::size_t>(
-      std::count_if(fields.begin(), fields.end(), [this](const FieldAccuracy& field) {
-        const auto best = best_peer(field);
-        return best && field.nrmse(0) <= field.nrmse(*best);
-      }));
 }
 
 double AccuracyReport::mean_coverage(std::size_t i_level) const {

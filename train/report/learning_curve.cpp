@@ -169,7 +169,8 @@ LearningCurve learning_curve(const LearningCurveOptions& options, Log& log, cons
   }
   curve.v2 = curve.points.back();
   curve.fit = fit_power_law(n, e);
-  curve.gain_next_20 = 1 - curve.fit.at(n.back() + 20) / curve.fit.at(n.back());
+  curve.gain_next_20 =
+      curve.fit.at_bound() ? std::nan("") : 1 - curve.fit.at(n.back() + 20) / curve.fit.at(n.back());
   return curve;
 }
 

@@ -37,8 +37,13 @@ std::string to_json(const LearningCurve& curve) {
   root.update({{"study", curve.study},
                {"method", curve.method},
                {"points", Json::array()},
-               {"fit", {{"floor", curve.fit.floor}, {"scale", curve.fit.scale}, {"rate", curve.fit.rate}}},
-               {"gain_next_20", curve.gain_next_20},
+               {"fit",
+                {{"floor", curve.fit.floor},
+                 {"scale", curve.fit.scale},
+                 {"rate", curve.fit.rate},
+                 {"at_bound", curve.fit.at_bound()}}},
+               {"gain_next_20", std::isfinite(curve.gain_next_20) ? Json(curve.gain_next_20) : Json()},
+               {"small", curve.small},
                {"v1", to_node(curve.v1)},
                {"v2", to_node(curve.v2)}});
   for (const auto& point : curve.points) root["points"].push_back(to_node(point));
@@ -53,9 +58,11 @@ LearningCurve read_learning_curve(const std::filesystem::path& path) {
     for (const auto& node : root.at("points")) curve.points.push_back(to_point(node));
     const auto& fit = root.at("fit");
     curve.fit = {fit.at("floor"), fit.at("scale"), fit.at("rate")};
-    curve.gain_next_20 = root.at("gain_next_20");
+    curve.small = root.value("small", false);
     curve.v1 = to_point(root.at("v1"));
     curve.v2 = to_point(root.at("v2"));
+    const auto& gain = root.at("gain_next_20");  // files before 1.1 have one from fits at their bound too
+    curve.gain_next_20 = curve.fit.at_bound() || gain.is_null() ? std::nan("") : gain.get<double>();
     if (curve.points.empty())
       throw InputError({.what = "a learning curve without points", .where = path.string()});
     return curve;
@@ -72,13 +79,23 @@ std::string terminal_table(const LearningCurve& curve) {
     text += fmt::format("  {:>8}  {:>10}  {:>8}  {:>8}\n", point.cases, score_text(point.error_mean, 4),
                         score_text(point.error_std, 4),
                         score_text(curve.fit.at(static_cast<double>(point.cases)), 4));
-  return text + fmt::format("\n  20 more cases are expected to lower the error by {}.\n",
-                            percent_text(curve.gain_next_20));
+  return text + "\n  " + outlook(curve) + "\n";
+}
+
+std::string outlook(const LearningCurve& curve) {
+  const std::string quick = curve.small ? " A quick look: few sizes, one draw." : "";
+  if (!curve.fit.at_bound())
+    return fmt::format("20 more cases are expected to lower the error by {}.",
+                       percent_text(curve.gain_next_20)) +
+           quick;
+  std::string why = "The points fall as no power law with an error above zero does";
+  if (curve.fit.scale == 0) why = "The error does not fall with the number of cases here";
+  return why + ": what more cases would buy cannot be told from them." + quick;
 }
 
 std::string v1_v2_table(const LearningCurve& curve) {
   auto text = fmt::format(
-      "\n  v1 ({} cases) against v2 ({} cases), {}, the same held-out loads\n\n  {:<24}{:>10}{:>10}{:>10}\n  "
+      "\n  v1 ({} cases) against v2 ({} cases), {}, the same held-out cases\n\n  {:<24}{:>10}{:>10}{:>10}\n  "
       "{}\n",
       curve.v1.cases, curve.v2.cases, method_label(curve.method), "field", "v1", "v2", "change",
       std::string(54, '-'));

@@ -40,7 +40,7 @@ double covered_share(std::span<const float> truth, std::span<const float> predic
 }
 
 double nrmse_without_noise(const ErrorSums& sums, double noise) {
-  return math::nrmse(std::max(0.0, sums.error - noise), sums.departure - noise);
+  return sums.error > noise ? math::nrmse(sums.error - noise, sums.departure - noise) : undefined;
 }
 
 CaseSpan::CaseSpan(const MatrixF& values) {

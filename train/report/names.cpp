@@ -48,4 +48,20 @@ ShownUnit shown_unit(const std::string& field, const std::string& unit) {
   return {unit, 1};
 }
 
+std::string gain_text(const Gain& gain) {
+  if (!std::isfinite(gain.value)) return "-";
+  auto text = fmt::format("{:+.1f} %", 100 * gain.value);
+  if (gain.interval)
+    text += fmt::format(" [{:.1f}, {:.1f}]", 100 * gain.interval->low, 100 * gain.interval->high);
+  return text;
+}
+
+std::string case_text(const std::string& name, double load) {
+  return std::isfinite(load) ? fmt::format("{} ({:.0f} % load)", name, 100 * load) : name;
+}
+
+bool has_loads(const AccuracyReport& report) {
+  return std::ranges::any_of(report.cases, [](const ScoredCase& one) { return std::isfinite(one.load); });
+}
+
 }  // namespace elrom::report

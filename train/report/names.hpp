@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "elrom/report/accuracy.hpp"
+
 namespace elrom::report {
 
 /// "pod_gp" -> "POD + GP"; unknown names stay.
@@ -27,5 +29,12 @@ struct ShownUnit {
   double factor = 1;
 };
 [[nodiscard]] ShownUnit shown_unit(const std::string& field, const std::string& unit);
+
+/// "+9.9 % [4.1, 14.2]": with its interval, where there is one.
+[[nodiscard]] std::string gain_text(const Gain& gain);
+/// "load_064 (64 % load)"; the name alone where no load is given.
+[[nodiscard]] std::string case_text(const std::string& name, double load);
+/// Does any of the scored cases state its load?
+[[nodiscard]] bool has_loads(const AccuracyReport& report);
 
 }  // namespace elrom::report

@@ -4,6 +4,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/version.hpp"
+#include "names.hpp"
 #include "page_assets.hpp"
 #include "page_parts.hpp"
 #include "svg.hpp"
@@ -13,10 +14,12 @@ namespace {
 
 using svg::escape;
 
-std::string navigation(bool with_choice, const PageExtras& extras) {
+std::string navigation(const AccuracyReport& report, bool with_choice, const PageExtras& extras) {
   std::string links =
       "<a href=\"#table\">Scores</a><a href=\"#cuts\">Cuts</a><a href=\"#profiles\">Profiles</a><a "
-      "href=\"#loads\">Loads</a>"
+      "href=\"#loads\">" +
+      std::string(has_loads(report) ? "Loads" : "Cases") +
+      "</a>"
       "<a href=\"#budget\">Error budget</a><a href=\"#coverage\">Coverage</a><a href=\"#errors\">Errors</a>"
       "<a href=\"#validity\">Validity</a>";
   if (with_choice) links += "<a href=\"#choice\">Choice</a>";
@@ -39,8 +42,7 @@ std::string validity_section(const AccuracyReport& report) {
   return section(
       "validity", "Validity and physics of the held-out cases",
       "Where each case lies among the training cases, and what the fields say about mass and pressure. "
-      "EL3D's own averages "
-      "do not close their balances exactly either: compare the two rows.",
+      "Averages of the cases themselves need not close their balances exactly either: compare the two rows.",
       validity_table(report) + "<h3 style=\"margin-top:22px\">Physics audit</h3>" + audit_table(report));
 }
 
@@ -77,7 +79,7 @@ std::string html_page(const AccuracyReport& report, const PageExtras& extras) {
   std::string content =
       opening(report) +
       section("table", "Scores by field",
-              "Every method on the same split and the same cells. The dot marks the best in each row.",
+              "Every method on the same cases and the same cells. The dot marks the best in each row.",
               score_tables(report));
   content += cut_section(report) + profile_section(report) + load_section(report) + budget_section(report);
   content += coverage_section(report) + error_section(report) + submodel_table(report) +
@@ -88,13 +90,15 @@ std::string html_page(const AccuracyReport& report, const PageExtras& extras) {
   content += provenance(report);
   content +=
       fmt::format("<footer>{} &middot; {}</footer>", escape(program_version()), escape(report.created));
-  return whole_page("ELROM accuracy: " + report.study.name, navigation(!choice.empty(), extras), content);
+  return whole_page("ELROM accuracy: " + report.study.name, navigation(report, !choice.empty(), extras),
+                    content);
 }
 
 PageExtras find_extras(const StudyFiles& study) {
   PageExtras extras;
-  const auto curve = study.directory / "learning-curve.json", cost = study.directory / "cost.json",
-             trials = study.directory / "search.sqlite";
+  auto curve = study.directory / "learning-curve.json";
+  if (!std::filesystem::exists(curve)) curve = study.directory / "learning-curve-small.json";
+  const auto cost = study.directory / "cost.json", trials = study.directory / "search.sqlite";
   if (std::filesystem::exists(curve)) extras.learning_curve = read_learning_curve(curve);
   if (std::filesystem::exists(cost)) extras.cost = read_cost_report(cost);
   if (std::filesystem::exists(trials)) extras.searches = networks::TrialStore(trials).searches();

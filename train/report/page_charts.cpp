@@ -1,9 +1,10 @@
-// Drawn sections of the page: loads, error budget, coverage, error distributions, profiles.
+// Drawn sections of the page: cases, error budget, coverage, error distributions, profiles.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "elrom/methods/catalogue.hpp"
@@ -20,12 +21,15 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return unit == "1" || unit.empty() ? name : name + " [" + unit + "]";
 }
 
-// Cases by rising load, for lines.
+// Cases by rising load, for lines; those that state none come last, by name.
 std::vector<std::size_t> by_load(const AccuracyReport& report) {
+  const auto place = [](const ScoredCase& one) {
+    return std::pair(std::isfinite(one.load) ? one.load : std::numeric_limits<double>::infinity(), one.name);
+  };
   std::vector<std::size_t> order(report.cases.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return report.cases[a].load < report.cases[b].load; });
+            [&](std::size_t a, std::size_t b) { return place(report.cases[a]) < place(report.cases[b]); });
   return order;
 }
 
@@ -40,10 +44,13 @@ double mean_case_nrmse(const AccuracyReport& report, std::size_t method, std::si
 
 std::string load_chart(const AccuracyReport& report) {
   std::vector<double> loads, everything;
-  for (const auto i : by_load(report)) loads.push_back(100 * report.cases[i].load);
   std::vector<std::vector<double>> errors(report.methods.size());
-  for (std::size_t m = 0; m < report.methods.size(); ++m)
-    for (const auto i : by_load(report)) errors[m].push_back(mean_case_nrmse(report, m, i));
+  for (const auto i : by_load(report)) {
+    if (!std::isfinite(report.cases[i].load)) continue;
+    loads.push_back(100 * report.cases[i].load);
+    for (std::size_t m = 0; m < report.methods.size(); ++m)
+      errors[m].push_back(mean_case_nrmse(report, m, i));
+  }
   for (const auto& list : errors) everything.insert(everything.end(), list.begin(), list.end());
   everything.push_back(0);
   svg::Chart chart({.width = 640, .height = 340}, svg::fit_axis("load [% of full load]", loads),
@@ -59,7 +66,8 @@ std::string load_chart(const AccuracyReport& report) {
 std::string load_table(const AccuracyReport& report) {
   std::string head = "<th>field</th>", body;
   for (const auto i : by_load(report))
-    head += fmt::format("<th>{}<br>{:.0f} %</th>", escape(report.cases[i].name), 100 * report.cases[i].load);
+    head += "<th>" + escape(report.cases[i].name) +
+            (has_loads(report) ? fmt::format("<br>{}", percent_text(report.cases[i].load, 0)) : "") + "</th>";
   for (const auto& field : report.fields) {
     body += fmt::format("<tr><th>{}</th>", escape(field_label(field.info.name)));
     for (const auto i : by_load(report))
@@ -116,9 +124,10 @@ std::string coverage_table(const AccuracyReport& report) {
          "</tbody></table></div>";
 }
 
-std::string parity_chart(const FieldAccuracy& field, const ParityMap& map) {
+std::string parity_chart(const AccuracyReport& report, const FieldAccuracy& field, const ParityMap& map) {
   const auto unit = shown_unit(field.info.name, field.info.unit);
-  const svg::Axis x{with_unit("EL3D", unit.symbol), map.low * unit.factor, map.high * unit.factor};
+  const svg::Axis x{with_unit(report.words.reference(), unit.symbol), map.low * unit.factor,
+                    map.high * unit.factor};
   const svg::Axis y{with_unit("predicted", unit.symbol), x.low, x.high};
   return parity_drawing(map, x, y, "s0", "Parity of " + field.info.name);
 }
@@ -148,10 +157,10 @@ std::string error_chart(const AccuracyReport& report, const FieldAccuracy& field
       most = std::max(most, 100 * static_cast<double>(count) /
                                 static_cast<double>(std::max<std::uint64_t>(1, figures.errors[m].total())));
   const auto& own = figures.errors.front();
-  svg::Chart chart(
-      {.width = 320, .height = 220, .left = 50},
-      {with_unit("predicted - EL3D", unit.symbol), own.low * unit.factor, own.high * unit.factor},
-      {"cells [%]", 0, most > 0 ? 1.08 * most : 1}, "Errors of " + field.info.name);
+  svg::Chart chart({.width = 320, .height = 220, .left = 50},
+                   {with_unit("predicted - " + report.words.reference(), unit.symbol), own.low * unit.factor,
+                    own.high * unit.factor},
+                   {"cells [%]", 0, most > 0 ? 1.08 * most : 1}, "Errors of " + field.info.name);
   for (auto m = shown.rbegin(); m != shown.rend(); ++m)
     step_line(chart, figures.errors[*m], unit.factor, series_class(report, *m),
               method_label(report.methods[*m].file.name));
@@ -189,7 +198,7 @@ std::string profile_chart(const AccuracyReport& report, std::size_t f, std::size
     if (!series[m + 1].empty())
       chart.line(series[m + 1], z, series_class(report, m) + " thin",
                  method_label(report.methods[m].file.name));
-  chart.line(series[0], z, "truth", "EL3D");
+  chart.line(series[0], z, "truth", report.words.reference());
   chart.line(series[1], z, series_class(report, 0), "ELROM");
   return chart.text();
 }
@@ -221,18 +230,20 @@ std::string series_class(const AccuracyReport& report, std::size_t method) {
 }
 
 std::string method_legend(const AccuracyReport& report, bool with_truth) {
-  std::string items = with_truth ? "<li><i class=\"truth\"></i>EL3D</li>" : "";
+  std::string items =
+      with_truth ? "<li><i class=\"truth\"></i>" + escape(report.words.reference()) + "</li>" : "";
   for (std::size_t m = 0; m < report.methods.size(); ++m)
-    items += fmt::format("<li><i class=\"{}\"></i>{}</li>", series_class(report, m),
-                         escape(method_label(report.methods[m].file.name)));
+    items += fmt::format("<li><i class=\"{}\"></i>{}</li>", series_class(report, m), escape(report.title(m)));
   return "<ul class=\"legend\">" + items + "</ul>";
 }
 
 std::string load_section(const AccuracyReport& report) {
-  return section("loads", "Error against load",
+  const bool with_loads = has_loads(report);
+  return section("loads", with_loads ? "Error against load" : "Error by case",
                  "Each held-out case on its own. NRMSE of one case is taken against that case's own distance "
                  "from the training mean.",
-                 "<div class=\"grid2\">" + figure("Mean over fields, by method", load_chart(report)) +
+                 "<div class=\"grid2\">" +
+                     (with_loads ? figure("Mean over fields, by method", load_chart(report)) : "") +
                      "<figure><figcaption>ELROM, by field</figcaption>" + load_table(report) +
                      "</figure></div>");
 }
@@ -272,7 +283,7 @@ std::string coverage_section(const AccuracyReport& report) {
                  "Share of held-out cells that lie inside their prediction interval. Cells of one case err "
                  "together, so a single case may well lie off the line.",
                  "<div class=\"grid2\">" + figure("All held-out cases", coverage_chart(report)) +
-                     "<figure><figcaption>By field and load</figcaption>" + coverage_table(report) +
+                     "<figure><figcaption>By field and case</figcaption>" + coverage_table(report) +
                      "</figure></div>");
 }
 
@@ -281,19 +292,20 @@ std::string error_section(const AccuracyReport& report) {
   for (std::size_t f = 0; f < report.fields.size(); ++f)
     figures += fmt::format("<figure><figcaption>{}</figcaption>{}{}</figure>",
                            escape(field_label(report.fields[f].info.name)),
-                           parity_chart(report.fields[f], report.figures->fields[f].parity),
+                           parity_chart(report, report.fields[f], report.figures->fields[f].parity),
                            error_chart(report, report.fields[f], report.figures->fields[f]));
   return section("errors", "Parity and distribution of errors",
-                 "All cells of all held-out cases: prediction against EL3D (darker: more cells, on a "
-                 "logarithmic scale), and the errors of ELROM beside the field's best simple peer.",
+                 "All cells of all held-out cases: prediction against " + escape(report.words.reference()) +
+                     " (darker: more cells, on a logarithmic scale), and the errors of ELROM beside the "
+                     "field's best simple peer.",
                  method_legend(report, false) + "<div class=\"grid3\">" + figures + "</div>");
 }
 
 std::string profile_section(const AccuracyReport& report) {
   std::string options, groups;
   for (std::size_t i = 0; i < report.cases.size(); ++i) {
-    options += fmt::format("<option value=\"{}\">{} ({:.0f} % load)</option>", i,
-                           escape(report.cases[i].name), 100 * report.cases[i].load);
+    options += fmt::format("<option value=\"{}\">{}</option>", i,
+                           escape(case_text(report.cases[i].name, report.cases[i].load)));
     std::string figures;
     for (std::size_t f = 0; f < report.fields.size(); ++f)
       figures += figure(field_label(report.fields[f].info.name), profile_chart(report, f, i));

@@ -106,33 +106,42 @@ std::string options(const std::vector<std::string>& names, std::size_t selected)
 
 }  // namespace
 
-std::string cut_section(const AccuracyReport& report) {
+std::string cut_viewer(const AccuracyReport& report, const std::vector<CutPanel>& panels, bool with_choice) {
   std::vector<std::string> fields, cases, methods;
   std::size_t first = 0;
   for (std::size_t f = 0; f < report.fields.size(); ++f) {
     fields.push_back(field_label(report.fields[f].info.name));
     if (report.fields[f].info.name == "solid_volume_fraction") first = f;
   }
-  for (const auto& scored : report.cases)
-    cases.push_back(fmt::format("{} ({:.0f} % load)", scored.name, 100 * scored.load));
-  for (const auto m : report.figures->cut_methods)
-    methods.push_back(method_label(report.methods[m].file.name));
-  const auto body = fmt::format(
+  for (const auto& scored : report.cases) cases.push_back(case_text(scored.name, scored.load));
+  for (const auto m : report.figures->cut_methods) methods.push_back(report.title(m));
+  const auto chosen =
+      fmt::format("<label>predicted by<select id=\"cut-method\">{}</select></label>", options(methods, 0));
+  std::string drawings;
+  for (const auto& panel : panels)
+    drawings += fmt::format("<figure><h3>{}</h3><canvas data-series=\"{}\"></canvas></figure>", panel.title,
+                            panel.series);
+  return fmt::format(
       "<div class=\"controls\"><label>field<select id=\"cut-field\">{}</select></label><label>held-out "
-      "case<select id=\"cut-case\">{}</select></label>"
-      "<label>predicted by<select id=\"cut-method\">{}</select></label><label class=\"tick\"><input "
+      "case<select id=\"cut-case\">{}</select></label>{}<label class=\"tick\"><input "
       "type=\"checkbox\" id=\"cut-log\">logarithmic colours</label></div>"
-      "<div class=\"slices\"><figure><h3>EL3D</h3><canvas></canvas></figure><figure><h3><span "
-      "id=\"cut-method-name\">ELROM</span></h3><canvas></canvas></figure>"
-      "<figure><h3>predicted &minus; EL3D</h3><canvas></canvas></figure></div><p id=\"readout\">Point at a "
-      "cell to read its values.</p>"
+      "<div class=\"slices\">{}</div><p id=\"readout\">Point at a cell to read its values.</p>"
       "<noscript><p>The cuts are drawn by a script inside this page; it is switched off.</p></noscript>"
       "<script type=\"application/json\" id=\"cut-data\">{}</script>",
-      options(fields, first), options(cases, 0), options(methods, 0), embedded(report).dump());
-  return section("cuts", "Vertical cuts: EL3D, prediction, difference",
-                 "Through the middle of the furnace, to scale. EL3D and prediction share one colour scale, "
-                 "set by EL3D's 0.5 to 99.5 % range.",
-                 body);
+      options(fields, first), options(cases, 0), with_choice ? chosen : "", drawings,
+      embedded(report).dump());
+}
+
+std::string cut_section(const AccuracyReport& report) {
+  const auto truth = svg::escape(report.words.reference());
+  return section("cuts", fmt::format("Vertical cuts: {}, prediction, difference", truth),
+                 "Through the middle of the mesh, to scale. The first two share one colour scale, the 0.5 to "
+                 "99.5 % range of the first.",
+                 cut_viewer(report,
+                            {{truth, "0"},
+                             {"<span id=\"cut-method-name\">ELROM</span>", "chosen"},
+                             {"predicted &minus; " + truth, "chosen-0"}},
+                            true));
 }
 
 }  // namespace elrom::report

@@ -190,7 +190,9 @@ std::string learning_section(const LearningCurve& curve) {
     reach.push_back(point.error_mean - point.error_std);
   }
   std::vector<double> x, y;
-  for (double n = cases.front(); n <= cases.back() + 40; n += 1) {
+  const double farthest =
+      cases.back() + (curve.fit.at_bound() ? 0 : 40);  // a fit at its bound goes no further
+  for (double n = cases.front(); n <= farthest; n += 1) {
     x.push_back(n);
     y.push_back(curve.fit.at(n));
   }
@@ -219,9 +221,8 @@ std::string learning_section(const LearningCurve& curve) {
       "cases</th><th>change</th></tr></thead><tbody>{}</tbody></table></div></figure>",
       curve.v1.cases, curve.v2.cases, body);
   return section("learning", "What more cases buy",
-                 fmt::format("{} fitted anew on nested subsets, scored on the same held-out cases. Twenty "
-                             "more cases are expected to lower the error by {}.",
-                             escape(method_label(curve.method)), percent_text(curve.gain_next_20)),
+                 fmt::format("{} fitted anew on nested subsets, scored on the same held-out cases. {}",
+                             escape(method_label(curve.method)), outlook(curve)),
                  "<div class=\"grid2\">" +
                      figure("Error against the number of training cases", chart.text()) + table + "</div>");
 }

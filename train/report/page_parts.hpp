@@ -43,7 +43,16 @@ namespace elrom::report {
 [[nodiscard]] std::string learning_section(const LearningCurve& curve);
 [[nodiscard]] std::string cost_section(const CostReport& cost);
 
-/// The viewer of cuts and its embedded data.
+/// One drawing of the viewer of cuts.
+struct CutPanel {
+  std::string title;
+  /// A series of the data: "0" is the truth, "1" the first method, "chosen" the one that the viewer's select
+  /// names; or the difference of two: "chosen-0"
+  std::string series;
+};
+/// The viewer of cuts and its embedded data. @param panels three to a row
+[[nodiscard]] std::string cut_viewer(const AccuracyReport& report, const std::vector<CutPanel>& panels,
+                                     bool with_choice);
 [[nodiscard]] std::string cut_section(const AccuracyReport& report);
 
 }  // namespace elrom::report

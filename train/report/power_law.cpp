@@ -35,11 +35,18 @@ Line fit_line(const std::vector<double>& basis, const std::vector<double>& error
 
 double PowerLaw::at(double n_cases) const { return floor + scale * std::pow(n_cases, -rate); }
 
+bool PowerLaw::at_bound() const {
+  constexpr double rounding = 1e-6;  // of the steps in which the rate is searched
+  return rate < least_rate + rounding || rate > most_rate - rounding || scale == 0 || floor == 0;
+}
+
 PowerLaw fit_power_law(const std::vector<double>& cases, const std::vector<double>& errors) {
   check(cases.size() == errors.size() && !cases.empty(), "fit_power_law: as many errors as numbers of cases");
   PowerLaw best;
   double least = std::numeric_limits<double>::infinity();
-  for (double rate = 0.05; rate <= 2.0001; rate += 0.025) {
+  constexpr int n_steps = 78;
+  for (int step = 0; step <= n_steps; ++step) {
+    const double rate = PowerLaw::least_rate + (PowerLaw::most_rate - PowerLaw::least_rate) * step / n_steps;
     std::vector<double> basis;
     for (const double n : cases) basis.push_back(std::pow(n, -rate));
     const auto line = fit_line(basis, errors);

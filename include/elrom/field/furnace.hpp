@@ -32,6 +32,14 @@ struct Opening {
 };
 [[nodiscard]] const std::vector<std::string>& opening_kinds();
 
+/// What reports call things. What is not said has a neutral name, so that no problem is taken for another.
+struct Words {
+  std::optional<std::string> one, many;                      ///< of the cases: "load", "loads"
+  std::optional<std::string> truth;                          ///< what computed them: "EL3D"
+  [[nodiscard]] std::string case_word(std::size_t n) const;  ///< for n of them
+  [[nodiscard]] std::string reference() const;
+};
+
 struct Furnace {
   std::string name;
   double solid_density = 0;  ///< [kg/m3]
@@ -41,6 +49,7 @@ struct Furnace {
   std::vector<std::string> repeats;   ///< those of them that are run again to tell the noise
   std::vector<Opening> openings;
   std::vector<MirrorDeclaration> mirrors;
+  Words words;
 
   [[nodiscard]] bool is_repeat(std::string_view case_name) const;
   /// The same fields, within what this furnace allows.

@@ -30,7 +30,6 @@ class BlendModel final : public FieldModel {
                Workspace& workspace) const override;
   /// The parts that have a closed form are without the case, the others as they are; nullptr: none has.
   [[nodiscard]] std::unique_ptr<FieldModel> without_case(std::size_t i_case) const override;
-  [[nodiscard]] const std::vector<Member>& members() const { return parts_; }
   void save(io::TensorFile& file, const std::string& prefix) const override;
   [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
                                                         const Wanted& wanted);

@@ -10,12 +10,15 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "elrom/base/log.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/field/furnace.hpp"
+#include "elrom/math/bootstrap.hpp"
 #include "elrom/model/audit.hpp"
 #include "elrom/model/guard.hpp"
 #include "elrom/report/figures.hpp"
@@ -38,7 +41,7 @@ struct AccuracyOptions {
 /// A case that is scored.
 struct ScoredCase {
   std::string name;
-  double load = 0;
+  double load = 0;  ///< NaN: not given
   model::Assessment validity;
   model::Audit truth_audit, prediction_audit;
 };
@@ -91,16 +94,34 @@ struct FieldAccuracy {
   std::vector<std::vector<double>> coverage;  //!< measured share, (levels, n_cases); empty: no promise made
   [[nodiscard]] double noise_energy() const;  ///< of all scored cases together; 0 when not known
   [[nodiscard]] double nrmse(std::size_t method) const;
-  /// With the noise of the truth taken off; NaN without repeated runs.
+  /// With the noise of the truth taken off; NaN without repeated runs, and for an error below the noise.
   [[nodiscard]] double nrmse_without_noise(std::size_t method) const;
+  /// The method's error is no larger than the noise that the repeated runs tell: nothing is left to take off.
+  [[nodiscard]] bool below_noise(std::size_t method) const;
+  /// Noise is known, and no method's error is below it: methods can be compared with the noise taken off.
+  [[nodiscard]] bool above_noise() const;
 };
+
+/// How much smaller one method's error is than another's, and how sure that is.
+struct Gain {
+  double value = 0;                           ///< 1 - NRMSE / NRMSE of the other; NaN: not known
+  std::optional<math::LikelyRange> interval;  ///< at gain_level, over the scored cases; none: too few cases
+  enum class Verdict { better, worse, not_shown };
+  [[nodiscard]] Verdict verdict() const;  ///< not shown: the interval holds 0, or there is none
+};
+/// Of all intervals of gains: two-sided, from math::bootstrap_interval with its draws and seed.
+inline constexpr double gain_level = 0.9;
 
 struct MethodSummary {
   BundleFile file;
   std::string digest;
-  double open_ms = 0, predict_ms = 0;  ///< all fields of one case, inside this process
-  double mean_nrmse = 0;               ///< over the fields; NaN when one is missing
-  double mean_nrmse_without_noise = 0;
+  std::vector<std::string> training_cases;
+  /// Held-out cases that it was trained on, by name or by boundary conditions: no test of it
+  std::vector<std::string> leaked_cases;
+  bool other_cases = false;             ///< trained on other cases than the study's models
+  double open_ms = 0, predict_ms = 0;   ///< all fields of one case, inside this process
+  double mean_nrmse = 0;                ///< over the fields; NaN when one is missing
+  double mean_nrmse_without_noise = 0;  ///< over the fields above the noise; NaN when there is none
 };
 
 struct AccuracyReport {
@@ -111,17 +132,31 @@ struct AccuracyReport {
   std::vector<MethodSummary> methods;  ///< the study's model first
   std::vector<FieldAccuracy> fields;
   std::vector<std::string> repeats;  ///< runs that gave the noise
+  field::Words words;                ///< of the store's furnace description
   std::optional<Figures> figures;
 
   /// Index of the simple peer with the lowest mean NRMSE; none without peers.
   [[nodiscard]] std::optional<std::size_t> best_peer() const;
   /// Index of the best simple peer in one field.
   [[nodiscard]] std::optional<std::size_t> best_peer(const FieldAccuracy& field) const;
-  /// 1 - model / best single peer, of the mean over fields; NaN without peers.
-  [[nodiscard]] double gain() const;
+  /// Over the best single peer, of the mean over fields; NaN without peers.
+  [[nodiscard]] Gain gain() const;
+  /// Of one field over its best single peer.
+  [[nodiscard]] Gain gain(const FieldAccuracy& field) const;
+  /// NaN also where the model or the best peer is below the noise in some field.
   [[nodiscard]] double gain_without_noise() const;
-  /// Fields where the model's NRMSE is at or below that of every simple peer.
+  /// Fields where the model's NRMSE is at or below that of every simple peer; of every other method shown.
   [[nodiscard]] std::size_t fields_won() const;
+  [[nodiscard]] std::size_t fields_won_against_all() const;
+  /// Indices of the fields where a method's NRMSE is below that of the study's model.
+  [[nodiscard]] std::vector<std::size_t> fields_better(std::size_t method) const;
+  /// Fields where the study's model is below the noise; where every method is above it.
+  [[nodiscard]] std::size_t fields_below_noise() const;
+  [[nodiscard]] std::size_t fields_above_noise() const;
+  /// What sets a method apart from the others: "77 cases", "saw 5 held out"; empty: like for like.
+  [[nodiscard]] std::vector<std::string> marks(std::size_t method) const;
+  /// "ELROM (77 cases)"
+  [[nodiscard]] std::string title(std::size_t method) const;
   /// Measured coverage over all fields and cases at a level's index; NaN when no field makes a promise.
   [[nodiscard]] double mean_coverage(std::size_t i_level) const;
 };
@@ -130,7 +165,14 @@ struct AccuracyReport {
 [[nodiscard]] AccuracyReport evaluate(const AccuracyOptions& options, Log& log,
                                       const std::stop_token& stop = {});
 
-/// One sentence: what was reached, and where a peer is better.
+/// Of `fields` (their mean, where there are several) over the scored cases: `method` against `other`.
+[[nodiscard]] Gain relative_gain(std::span<const FieldAccuracy> fields, std::size_t method,
+                                 std::size_t other);
+/// "9.9 % (90 % interval 4.1 to 14.2 %)" of the size of a gain; says so where no difference is shown.
+[[nodiscard]] std::string in_words(const Gain& gain);
+
+/// What was reached, against what how sure that is, where any other method shown is better, and what makes
+/// methods unlike each other: the same sentences in terminal, JSON and page.
 [[nodiscard]] std::string headline(const AccuracyReport& report);
 /// Fields against methods for a terminal; `colour` uses ANSI sequences.
 [[nodiscard]] std::string terminal_table(const AccuracyReport& report, bool colour);

@@ -36,10 +36,14 @@ struct LearningPoint {
   std::map<std::string, double> field_error;  ///< mean over the draws, by field
 };
 
-/// error(n) = floor + scale * n^-rate, by least squares.
+/// error(n) = floor + scale * n^-rate, by least squares; the rate within its range, floor and scale are >= 0.
 struct PowerLaw {
+  static constexpr double least_rate = 0.05, most_rate = 2.0;
   double floor = 0, scale = 0, rate = 0;
   [[nodiscard]] double at(double n_cases) const;
+  /// The points asked for more than the law can give: a rate beyond its range, an error that rises, or one
+  /// that would fall below nothing. It then draws a line through them, but says nothing of more cases.
+  [[nodiscard]] bool at_bound() const;
 };
 /// @param cases, errors the points, at least three of different size; fewer give a constant
 [[nodiscard]] PowerLaw fit_power_law(const std::vector<double>& cases, const std::vector<double>& errors);
@@ -48,9 +52,11 @@ struct LearningCurve {
   std::string study, method;
   std::vector<LearningPoint> points;  ///< by rising number of cases
   PowerLaw fit;
-  double gain_next_20 = 0;  ///< expected fall of the error, as a share, with 20 more cases
-  LearningPoint v1;         ///< a third of the cases
-  LearningPoint v2;         ///< all of them
+  /// Expected fall of the error, as a share, with 20 more cases; NaN for a fit at its bound
+  double gain_next_20 = 0;
+  bool small = false;  ///< a quick look: few sizes, one draw
+  LearningPoint v1;    ///< a third of the cases
+  LearningPoint v2;    ///< all of them
 };
 
 /// @throws InputError, UsageError, Interrupted
@@ -61,6 +67,8 @@ struct LearningCurve {
 [[nodiscard]] std::string to_json(const LearningCurve& curve);
 [[nodiscard]] LearningCurve read_learning_curve(const std::filesystem::path& path);
 [[nodiscard]] std::string terminal_table(const LearningCurve& curve);
+/// What 20 more cases are expected to buy, or why these points do not tell: a sentence for terminal and page.
+[[nodiscard]] std::string outlook(const LearningCurve& curve);
 /// The source's table: error of v1 and v2 for each field.
 [[nodiscard]] std::string v1_v2_table(const LearningCurve& curve);
 

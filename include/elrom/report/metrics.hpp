@@ -33,8 +33,8 @@ struct WorstCell {
                                    std::span<const float> half_width);
 
 /// NRMSE with the noise of the truth taken off error and departure alike:
-/// sqrt((error - noise) / (departure - noise)); 0 where no more error than
-/// noise is left, NaN where the truth departs from the mean by noise alone.
+/// sqrt((error - noise) / (departure - noise)). NaN where there is no more error than noise (taken for 0, it
+/// would promise a perfect model), or the truth departs from the mean by noise alone.
 /// @param noise energy in all cases summed in `sums`
 [[nodiscard]] double nrmse_without_noise(const ErrorSums& sums, double noise);
 

@@ -20,8 +20,8 @@ struct PageExtras {
   std::vector<networks::TrialStore::Search> searches;
 };
 
-/// What lies in the study's directory: learning-curve.json,
-/// cost.json, search.sqlite. Missing parts stay empty.
+/// What lies in the study's directory: learning-curve.json, else learning-curve-small.json, which says that
+/// it is a quick look; cost.json, search.sqlite. Missing parts stay empty.
 [[nodiscard]] PageExtras find_extras(const StudyFiles& study);
 
 /// @param report with figures

@@ -181,20 +181,30 @@
     });
   }
 
+  // Every canvas says what it shows: a series ("0" is the truth), the one that was chosen, or a difference of two.
+  function shownOf(canvas, series) {
+    const of = (name) => valuesOf(series[name === "chosen" ? state.method + 1 : Number(name)]) || valuesOf(series[1]);
+    const [a, b] = canvas.dataset.series.split("-");
+    if (b === undefined) return of(a);
+    const minus = of(b);
+    return of(a).map((v, i) => v - minus[i]);
+  }
+  const isDifference = (canvas) => canvas.dataset.series.includes("-");
+
   let current = null;
   function draw() {
     const field = data.fields[state.field];
     const series = field.cases[state.case];
     const truth = valuesOf(series[0]);
-    const prediction = valuesOf(series[state.method + 1]) || valuesOf(series[1]);
-    const difference = prediction.map((v, i) => v - truth[i]);
     const scale = scaleOf(truth, state.log);
-    const reach = quantile(difference.map(Math.abs), 0.99) || 1;
-    drawPanel(slots[0], truth, scale, field);
-    drawPanel(slots[1], prediction, scale, field);
-    drawPanel(slots[2], difference, { low: -reach, high: reach, map: maps.diverging, log: false }, field);
-    current = { field, truth, prediction, difference };
-    $("#cut-method-name").textContent = data.methods[state.method];
+    const values = slots.map((canvas) => shownOf(canvas, series));
+    const differences = values.filter((_, k) => isDifference(slots[k]));
+    const reach = Math.max(...differences.map((list) => quantile(list.map(Math.abs), 0.99))) || 1;
+    slots.forEach((canvas, k) => drawPanel(canvas, values[k], isDifference(canvas)
+      ? { low: -reach, high: reach, map: maps.diverging, log: false } : scale, field));
+    current = { field, values };
+    const chosen = $("#cut-method-name");
+    if (chosen) chosen.textContent = data.methods[state.method];
     $("#cut-log").closest("label").hidden = truth.some((v) => v < 0);
     all("[data-profile-case]").forEach((figure) => { figure.hidden = Number(figure.dataset.profileCase) !== state.case; });
   }
@@ -219,10 +229,15 @@
       for (let i = 0; i < place.n; ++i) {
         if (!contains(corners[k], i, u, z)) continue;
         const at = place.offset + i, unit = current.field.unit === "1" ? "" : " " + current.field.unit;
-        $("#readout").innerHTML = data.cuts[k].title + ", " + data.cuts[k].horizontal[0] + " = " +
-          (u + data.cuts[k].low[0]).toFixed(1) + " m, z = " + (z + data.cuts[k].low[1]).toFixed(1) + " m: EL3D <b>" + shown(current.truth[at], current.field) + unit + "</b>, predicted <b>" +
-          shown(current.prediction[at], current.field) + unit + "</b>, difference <b>" +
-          shown(current.difference[at], current.field) + unit + "</b>";
+        const where = data.cuts[k].title + ", " + data.cuts[k].horizontal[0] + " = " +
+          (u + data.cuts[k].low[0]).toFixed(1) + " m, z = " + (z + data.cuts[k].low[1]).toFixed(1) + " m: ";
+        const readout = $("#readout");
+        readout.textContent = where;
+        slots.forEach((slot, j) => {
+          const value = document.createElement("b");
+          value.textContent = shown(current.values[j][at], current.field) + unit;
+          readout.append((j > 0 ? ", " : "") + slot.parentElement.querySelector("h3").textContent + " ", value);
+        });
         return;
       }
     });
