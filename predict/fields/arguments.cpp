@@ -128,8 +128,7 @@ void check_output(const Arguments& arguments) {
   const bool there = std::filesystem::exists(arguments.output, unreadable);
   if (there && !std::filesystem::is_directory(arguments.output, unreadable) &&
       !arguments.to_standard_output())
-    throw UsageError(
-        {.what = "--output " + arguments.output + " is a file", .expected = "a folder"});
+    throw UsageError({.what = "--output " + arguments.output + " is a file", .expected = "a folder"});
 }
 
 void check_together(Arguments& arguments) {

@@ -1,7 +1,7 @@
 #pragma once
-// Command lines of all programs: options, subcommands, help, and what is said of a slip. CLI11 does the work
-// inside; functions have its names. It is not seen from here, since it costs every source that reads it two to
-// four seconds of compiling.
+// Command lines of all programs: options, subcommands, help, and what is said of a
+// slip. CLI11 does the work inside; functions have its names. It is not seen from here,
+// since it costs every source that reads it two to four seconds of compiling.
 //
 //   cli::App app("What it does.", "elrom-example");
 //   auto* command = app.add_subcommand("copy", "Copies.");

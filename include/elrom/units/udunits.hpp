@@ -15,9 +15,9 @@
 
 namespace elrom::units {
 
-/// Nothing: UDUNITS does not know it, or it is no multiple (a logarithm, a date). The SI unit has one spelling
-/// for each dimension: "J/kg" for kJ/kg. @throws InputError for a symbol that can be read in two ways;
-/// SystemError when the list of units cannot be read
+/// Nothing: UDUNITS does not know it, or it is no multiple (a logarithm, a date). The SI unit has one
+/// spelling for each dimension: "J/kg" for kJ/kg. @throws InputError for a symbol that can be read in two
+/// ways; SystemError when the list of units cannot be read
 [[nodiscard]] std::optional<base::Unit> find(std::string_view symbol);
 
 /// From now on base::unit() asks find().
