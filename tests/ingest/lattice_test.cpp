@@ -39,6 +39,8 @@ TEST(Lattice, CellsThatLeaveAPlaceEmptyAreNone) {
   cells.centre << 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 2;
 
   EXPECT_FALSE(become_boxes(cells, {0, 0, 0}));
+  cells.centre << 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1;  // as many as places, but two are at one
+  EXPECT_FALSE(become_boxes(cells, {0, 0, 0}));
   EXPECT_TRUE(cells.corners.empty());
 }
 

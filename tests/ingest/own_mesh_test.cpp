@@ -48,14 +48,18 @@ TEST(OwnMesh, TheTaperedFurnaceComesBackFromItsShuffledCells) {
   expect_equal(own.mesh, furnace);
 }
 
-/// Points without rows, in layers: columns stand above each other but for rounding.
+/// Points in layers, each above another but for rounding. Two lie so near each other that rounding alone
+/// decides which comes first in a row.
 CellSet extruded_cloud() {
-  const MatrixD place{{0.1, 0.2}, {0.7, 0.3}, {0.4, 0.9}, {0.1, 0.8}, {0.55, 0.2}};
+  const MatrixD place{{0.1, 0.2}, {0.7, 0.3}, {0.4, 0.9}, {0.1, 0.8}, {0.4, 0.900005}};
   CellSet cells;
   cells.centre.resize(15, 3);
-  for (Eigen::Index i = 0; i < 15; ++i)
-    cells.centre.row(i) << place(i % 5, 0) + 1e-9 * static_cast<double>(i), place(i % 5, 1),
-        static_cast<double>(i * 7 % 3) + 1e-9 * static_cast<double>(i);
+  for (Eigen::Index i = 0; i < 15; ++i) {
+    const Eigen::Index column = i % 5, plane = i * 7 % 3;
+    const double rounding = column == 4 ? (plane == 1 ? -1e-9 : 1e-9) : 0;
+    cells.centre.row(i) << place(column, 0) + rounding, place(column, 1),
+        static_cast<double>(plane) + 1e-9 * static_cast<double>(i);
+  }
   return cells;
 }
 
