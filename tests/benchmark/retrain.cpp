@@ -1,5 +1,5 @@
-// bench-retrain: what a retraining with a few new cases costs beside training from nothing on the same cases, in
-// processor seconds of the whole program, and how well both models do on the held-out cases.
+// bench-retrain: what a retraining with a few new cases costs beside training from nothing on the same
+// cases, in processor seconds of the whole program, and how well both models do on the held-out cases.
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// The model that a retraining starts from: what each field's fit may begin with, and which candidates need not
-// be tried again. Internal to the study.
+// The model that a retraining starts from: what each field's fit may begin with, and which candidates need
+// not be tried again. Internal to the study.
 
 #include <filesystem>
 #include <map>
@@ -27,14 +27,14 @@ class EarlierModel {
   /// Nothing is known of a field that the bundle lacks.
   [[nodiscard]] methods::WarmStart warm_start(const std::string& field) const;
 
-  /// Candidates of "auto" that stay out: no part of the earlier model, and their cross-validated error was more
-  /// than `far` above the winner's, with at least 1 / `growth` of the present cases.
+  /// Candidates of "auto" that stay out: no part of the earlier model, and their cross-validated error was
+  /// more than `far` above the winner's, with at least 1 / `growth` of the present cases.
   [[nodiscard]] std::vector<LeftOut> left_out(const std::string& field,
                                               const std::vector<const methods::Method*>& candidates,
                                               std::size_t n_cases) const;
 
-  /// Eight cases more than 64 took at most a quarter off a candidate's distance to the winner (0.144 to 0.108 of
-  /// its error, POD + GP per mode, the shipped cases); `far` is twice what a blend must gain to be taken.
+  /// Eight cases more than 64 took at most a quarter off a candidate's distance to the winner (0.144 to 0.108
+  /// of its error, POD + GP per mode, the shipped cases); `far` is twice what a blend must gain to be taken.
   static constexpr double far = 0.02, growth = 1.25;
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
-// What an earlier model of a field knows: where a fit may begin instead of from nothing, when a few cases have
-// been added since. A method takes of it what it can use and ignores the rest; what comes out depends on the
-// cases, the settings and the earlier model, and on nothing else.
+// What an earlier model of a field knows: where a fit may begin instead of from nothing, when a few cases
+// have been added since. A method takes of it what it can use and ignores the rest; what comes out depends
+// on the cases, the settings and the earlier model, and on nothing else.
 //
 // Thread rule: const use from any thread.
 

@@ -1,10 +1,10 @@
 #pragma once
-// A run within a given time: what it is spent on, most valuable first. A cost model says what fits: the kernel is
-// fitted once to one field, on this machine and as busy as it is now, and everything else follows from that by
-// counting fits. What was left out is said, with what it would take.
+// A run within a given time: what it is spent on, most valuable first. A cost model says what fits: the
+// kernel is fitted once to one field, on this machine and as busy as it is now, and everything else follows
+// from that by counting fits. What was left out is said, with what it would take.
 //
-// The choice is settings, which stand in resolved.toml as if they had been asked for, so that the same run can be
-// repeated without a budget.
+// The choice is settings, which stand in resolved.toml as if they had been asked for, so that the same run
+// can be repeated without a budget.
 
 #include <filesystem>
 #include <functional>
@@ -29,8 +29,8 @@ struct CostModel {
   double seconds_per_fit = 0;  ///< of the kernel on one field, one thread, wall
   std::size_t n_fields = 0;
   int n_threads = 1;
-  /// A run with networks at effort "quick", as a multiple of one without; of an earlier run of the study, else as
-  /// on the shipped cases.
+  /// A run with networks at effort "quick", as a multiple of one without; of an earlier run of the study,
+  /// else as on the shipped cases.
   double networks = 5;
   bool networks_had_no_part = false;  ///< in the study's present model, which tried them
 };
@@ -41,16 +41,17 @@ struct CostModel {
 /// Cheapest first. Settings that bound a run already (no networks, fewer folds) are kept.
 [[nodiscard]] std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel& model);
 
-/// The dearest level that fits, of those that do without networks; with time to spare that one and, after it, the
-/// first with networks. At least the cheapest.
+/// The dearest level that fits, of those that do without networks; with time to spare that one and, after
+/// it, the first with networks. At least the cheapest.
 [[nodiscard]] std::vector<BudgetLevel> levels_within(const std::vector<BudgetLevel>& levels, double seconds);
 
 /// What was not run, what it would take and what it may buy, a sentence each.
 [[nodiscard]] std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels,
                                                 const std::vector<BudgetLevel>& run, const CostModel& model);
 
-/// Runs the chosen levels by `train`, each from where the last left the folder. One that is not done when the time
-/// is up is stopped; the one before it is then the result, or where there is none POD + RBF, which takes seconds.
+/// Runs the chosen levels by `train`, each from where the last left the folder. One that is not done
+/// when the time is up is stopped; the one before it is then the result, or where there is none POD +
+/// RBF, which takes seconds.
 /// @param train one run with these settings, that ends with Interrupted when it is stopped
 /// @return the settings whose model stands @throws Interrupted on `stop`; what `train` throws
 [[nodiscard]] Settings run_within(double seconds, const std::vector<BudgetLevel>& chosen, Log& log,
