@@ -122,8 +122,9 @@ TEST(Cost, AStudyTellsItsPointsItsPartsAndWhatItWouldCostBare) {
   EXPECT_EQ(report.parts.size(), 2u);
   EXPECT_EQ(report.reference.n_cases, static_cast<double>(report::testing::SmallStudy::n_training));
   EXPECT_GT(report.reference.error, 0) << "the scatter of its repeated runs";
-  EXPECT_THAT(in_words(report), ::testing::Not(::testing::Contains(::testing::HasSubstr("networks cost"))))
-      << "its bundle does not say where they were tried";
+  EXPECT_THAT(in_words(report), ::testing::Contains(::testing::HasSubstr("networks cost 3.0 s")));
+  EXPECT_THAT(report.points.back().name, ::testing::EndsWith(": linear alone"));
+  EXPECT_EQ(report.points.back().train_processor_seconds, 1);
 }
 
 TEST(Cost, JsonReadsBackTheSame) {
