@@ -30,7 +30,7 @@ inline constexpr FileKind prediction{"elrom-prediction", {1, 1}, "predict again 
 inline constexpr FileKind manifest{"elrom-manifest", {1, 0}, "fetch the shipped cases again"};
 inline constexpr FileKind check{"elrom-check", {1, 0}, "check again with elrom-data check"};
 inline constexpr FileKind split{"elrom-split", {1, 0}, "train again with elrom-train run"};
-inline constexpr FileKind timing{"elrom-timing", {1, 0}, "remove it"};
+inline constexpr FileKind timing{"elrom-timing", {1, 1}, "remove it"};
 inline constexpr FileKind trials{"elrom-trials", {1, 0}, "remove it to search anew"};
 inline constexpr FileKind stage{"elrom-stage", {1, 0}, "remove it"};
 inline constexpr FileKind checkpoint{"elrom-checkpoint", {1, 0}, "remove it"};
@@ -38,7 +38,7 @@ inline constexpr FileKind retrain{"elrom-retrain", {1, 0}, "retrain again with e
 inline constexpr FileKind accuracy{"elrom-accuracy", {1, 0}, "report again with elrom-report accuracy"};
 inline constexpr FileKind learning_curve{
     "elrom-learning-curve", {1, 0}, "draw it again with elrom-report learning-curve"};
-inline constexpr FileKind cost{"elrom-cost", {1, 0}, "report again with elrom-report cost"};
+inline constexpr FileKind cost{"elrom-cost", {1, 1}, "report again with elrom-report cost"};
 inline constexpr FileKind collisions{
     "elrom-collisions", {1, 0}, "make them again with elrom-data collisions"};
 inline constexpr FileKind collision_summary{
