@@ -9,6 +9,7 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/report/learning_curve.hpp"
+#include "small_study.hpp"
 #include "support/throws.hpp"
 
 namespace elrom::report {
@@ -103,6 +104,27 @@ TEST(Cost, PartsAndReferenceReadBackTheSame) {
 
   EXPECT_EQ(read.points.front().train_processor_seconds, 250);
   EXPECT_EQ(in_words(read), in_words(report_with_networks(0)));
+}
+
+TEST(Cost, AStudyTellsItsPointsItsPartsAndWhatItWouldCostBare) {
+  const report::testing::SmallStudy study(file("cost-study"));
+  base::write_text(study.folder() / "timing.json", R"({"kind": "elrom-timing", "format": [1, 1], "stages": {},
+      "methods": {"linear": 3, "nearest": 0.25}, "method_processor_seconds": {"linear": 4, "nearest": 0.5},
+      "candidates": {"linear": {"seconds": 1, "processor_seconds": 1},
+                     "networks": {"seconds": 2, "processor_seconds": 3}}})");
+  const auto report = cost_report(
+      {.studies = {study.folder()}, .reference = {.name = "CFD", .hours = 2, .cores = 10}}, silent_log());
+
+  const auto& model = report.points.front();
+  EXPECT_EQ(model.train_processor_seconds, 4);
+  EXPECT_GT(model.predict_ms, 0);
+  EXPECT_GT(model.error_deviation, 0);
+  EXPECT_EQ(report.parts.size(), 2u);
+  EXPECT_EQ(report.reference.n_cases, static_cast<double>(report::testing::SmallStudy::n_training));
+  EXPECT_GT(report.reference.error, 0) << "the scatter of its repeated runs";
+  EXPECT_THAT(in_words(report), ::testing::Contains(::testing::HasSubstr("networks cost 3.0 s")));
+  EXPECT_THAT(report.points.back().name, ::testing::EndsWith(": linear alone"));
+  EXPECT_EQ(report.points.back().train_processor_seconds, 1);
 }
 
 TEST(Cost, JsonReadsBackTheSame) {

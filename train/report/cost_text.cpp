@@ -68,7 +68,7 @@ std::vector<std::string> in_words(const CostReport& report) {
   double all = 0;
   for (const auto& part : report.parts) all += part.processor_seconds;
   for (const auto& part : report.parts)
-    if (part.processor_seconds > 0.05 * all) words.push_back(part_sentence(part, report));
+    if (part.fields > 0 && part.processor_seconds > 0.05 * all) words.push_back(part_sentence(part, report));
   if (report.reference.hours > 0) words.push_back(reference_sentence(report));
   return words;
 }
