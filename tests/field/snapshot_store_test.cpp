@@ -77,9 +77,12 @@ TEST_F(Store, BringsUnitsThatNotEveryElromKnows) {
   EXPECT_THAT(io::Hdf5File::open(path_).dataset("inputs/factor").read<double>(),
               ElementsAre(base::unit("t/h").factor, 2.5));
   // As another process would find it, which knows no such unit.
-  const auto edited = io::Hdf5File::open(path_, io::Hdf5File::Access::edit).group("inputs");
-  edited.remove("display_unit");
-  edited.write_texts("display_unit", {"t/h", "barn_gate"});
+  {
+    const auto file = io::Hdf5File::open(path_, io::Hdf5File::Access::edit);
+    const auto inputs = file.group("inputs");
+    inputs.remove("display_unit");
+    inputs.write_texts("display_unit", {"t/h", "barn_gate"});
+  }
 
   const auto store = SnapshotStore::open(path_);
 
