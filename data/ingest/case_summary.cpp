@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boxes.hpp"
 #include "elrom/base/digest.hpp"
+#include "physics_checks.hpp"
 
 namespace elrom::ingest {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<int, 3> boxes{4, 6, 12};  // in x, y, z
 
 std::ptrdiff_t find_field(const CheckedCase& view, std::string_view name) {
   for (std::size_t f = 0; f < view.fields.size(); ++f) {
@@ -17,35 +18,6 @@ std::ptrdiff_t find_field(const CheckedCase& view, std::string_view name) {
   }
   return -1;
 }
-
-/// Where cells lie, relative to the box around all centres, and what they weigh.
-class Geometry {
- public:
-  explicit Geometry(const CheckedCase& view) : view_(view) {
-    low_ = view.centre->colwise().minCoeff();
-    high_ = view.centre->colwise().maxCoeff();
-  }
-  [[nodiscard]] double weight(Eigen::Index i) const {
-    return view_.volume.empty() ? 1.0 : view_.volume[static_cast<std::size_t>(i)];
-  }
-  [[nodiscard]] double relative(Eigen::Index i, int d) const {
-    const double extent = high_(d) - low_(d);
-    return extent > 0 ? ((*view_.centre)(i, d) - low_(d)) / extent : 0.5;
-  }
-  [[nodiscard]] int box(Eigen::Index i) const {
-    int index = 0;
-    for (int d = 2; d >= 0; --d) {
-      const int n = boxes[static_cast<std::size_t>(d)];
-      index = index * n + std::clamp(static_cast<int>(relative(i, d) * n), 0, n - 1);
-    }
-    return index;
-  }
-  [[nodiscard]] double extent(int d) const { return high_(d) - low_(d); }
-
- private:
-  const CheckedCase& view_;
-  Eigen::RowVector3d low_, high_;
-};
 
 /// Mean of `value(i)` over the cells that `wanted`, weighted by `weight(i)`; cells that are not finite are
 /// left out.
@@ -64,7 +36,7 @@ double mean(Eigen::Index n, Value value, Weight weight, Wanted wanted) {
 
 class Measuring {
  public:
-  Measuring(const CheckedCase& view, const Geometry& geometry) : view_(view), geometry_(geometry) {}
+  Measuring(const CheckedCase& view, const Boxes& boxes) : view_(view), boxes_(boxes) {}
 
   [[nodiscard]] std::array<double, n_measures> all() const {
     std::array<double, n_measures> m{};
@@ -86,7 +58,7 @@ class Measuring {
     return [this, f](Eigen::Index i) { return static_cast<double>(view_.values(f, i)); };
   }
   [[nodiscard]] auto cell_weight() const {
-    return [this](Eigen::Index i) { return geometry_.weight(i); };
+    return [this](Eigen::Index i) { return boxes_.weight(i); };
   }
   static bool everywhere(Eigen::Index) { return true; }
 
@@ -101,7 +73,7 @@ class Measuring {
     const auto f = find_field(view_, name);
     if (f < 0) return unknown;
     return mean(view_.values.cols(), value(f), cell_weight(), [&](Eigen::Index i) {
-      const double z = geometry_.relative(i, 2);
+      const double z = boxes_.relative(i, 2);
       return z >= low && z <= high;
     });
   }
@@ -110,27 +82,27 @@ class Measuring {
     if (d < 0 || e < 0) return unknown;
     const auto fraction = value(e);
     return mean(
-        view_.values.cols(), value(d), [&](Eigen::Index i) { return geometry_.weight(i) * fraction(i); },
+        view_.values.cols(), value(d), [&](Eigen::Index i) { return boxes_.weight(i) * fraction(i); },
         everywhere);
   }
   [[nodiscard]] double solids_volume() const {
     const auto e = find_field(view_, "solid_volume_fraction");
     if (e < 0) return unknown;
     double total = 0;
-    for (Eigen::Index i = 0; i < view_.values.cols(); ++i) total += geometry_.weight(i);
+    for (Eigen::Index i = 0; i < view_.values.cols(); ++i) total += boxes_.weight(i);
     return total * mean(view_.values.cols(), value(e), cell_weight(), everywhere);
   }
 
   const CheckedCase& view_;
-  const Geometry& geometry_;
+  const Boxes& boxes_;
 };
 
-MatrixF make_sketch(const CheckedCase& view, const Geometry& geometry) {
-  const Eigen::Index n_boxes = boxes[0] * boxes[1] * boxes[2];
+MatrixF make_sketch(const CheckedCase& view, const Boxes& boxes) {
+  const Eigen::Index n_boxes = Boxes::n_boxes;
   MatrixD sum = MatrixD::Zero(view.values.rows(), n_boxes), total = sum;
   for (Eigen::Index i = 0; i < view.values.cols(); ++i) {
-    const int box = geometry.box(i);
-    const double w = geometry.weight(i);
+    const int box = boxes.box(i);
+    const double w = boxes.weight(i);
     for (Eigen::Index f = 0; f < view.values.rows(); ++f) {
       const double v = view.values(f, i);
       if (!std::isfinite(v)) continue;
@@ -166,22 +138,22 @@ std::string_view field_of(Measure measure) {
 }
 
 CaseSummary summarise(const CheckedCase& view) {
-  const Geometry geometry(view);
+  const Boxes boxes(view);
   CaseSummary summary;
   summary.name = view.name;
   summary.load = view.load;
   if (view.schema) summary.schema = *view.schema;
   summary.inputs.assign(view.inputs.begin(), view.inputs.end());
   for (const auto& info : view.fields) summary.fields.push_back(info.name);
-  summary.measures = Measuring(view, geometry).all();
-  summary.height = geometry.extent(2);
+  summary.measures = Measuring(view, boxes).all();
+  summary.height = boxes.extent(2);
   summary.has_volume = !view.volume.empty();
   double volume = 0;
   for (const double v : view.volume) volume += v;
   // Centres span a cell less than the furnace; a mean section needs no better.
-  summary.area = summary.has_volume && summary.height > 0 ? volume / summary.height
-                                                          : geometry.extent(0) * geometry.extent(1);
-  summary.sketch = make_sketch(view, geometry);
+  summary.area =
+      summary.has_volume && summary.height > 0 ? volume / summary.height : boxes.extent(0) * boxes.extent(1);
+  summary.sketch = make_sketch(view, boxes);
   summary.digest = base::sha256(
       std::as_bytes(std::span(view.values.data(), static_cast<std::size_t>(view.values.size()))));
   for (Eigen::Index f = 0; f < view.values.rows(); ++f) {
@@ -194,6 +166,7 @@ CaseSummary summarise(const CheckedCase& view) {
     note_cells(
         view, f, [&](float v) { return v < lower || v > upper; }, summary.out_of_bounds);
   }
+  summary.readings = read_physics(view);
   return summary;
 }
 

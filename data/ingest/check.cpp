@@ -8,6 +8,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "outliers.hpp"
+#include "physics_checks.hpp"
 #include "unit_mistakes.hpp"
 
 namespace elrom::ingest {
@@ -49,6 +50,15 @@ void add_mistakes(std::span<const CaseSummary> cases, std::vector<Finding>& foun
   }
 }
 
+void add_physics(std::span<const CaseSummary> cases, std::vector<Finding>& found) {
+  for (const auto& one : judge_physics(cases)) {
+    const auto& reading = one.reading;
+    found.push_back({reading.check, one.impossible ? Severity::wrong : Severity::suspicious,
+                     cases[one.i_case].name, reading.quantity, -1, in_words(one), reading.value, one.low,
+                     one.high});
+  }
+}
+
 void add_twins(std::span<const CaseSummary> cases, std::vector<Finding>& found) {
   for (const auto& twin : find_twins(cases)) {
     const auto& other = cases[twin.first].name;
@@ -65,8 +75,10 @@ void add_twins(std::span<const CaseSummary> cases, std::vector<Finding>& found) 
 void add_outliers(std::span<const CaseSummary> cases, std::vector<Finding>& found) {
   for (const auto& outlier : find_outliers(cases)) {
     found.push_back({"outlier", Severity::suspicious, cases[outlier.i_case].name, outlier.field, -1,
-                     fmt::format("lies apart from the other cases ({} times the usual distance in POD space)",
-                                 base::rounded(outlier.distance, 2))});
+                     fmt::format("lies apart from the other cases: {} times the usual distance in POD space, "
+                                 "others up to {}",
+                                 base::rounded(outlier.distance, 2), base::rounded(outlier.limit, 2)),
+                     outlier.distance, 0, outlier.limit});
   }
 }
 
@@ -100,7 +112,14 @@ std::vector<CaseSummary> comparable(const std::vector<CaseSummary>& cases, std::
 
 std::string_view name_of(Severity severity) { return severities.name(severity); }
 
-CheckedCase view_of(const CfdCase& one) {
+const std::vector<std::string>& finding_kinds() {
+  static const std::vector<std::string> kinds{
+      "out_of_bounds", "unit",           "far_input",   "duplicate",        "near_duplicate", "outlier",
+      "mesh_cover",    "flow_direction", "gas_balance", "solids_inventory", "roughness"};
+  return kinds;
+}
+
+CheckedCase view_of(const CfdCase& one, const field::Mesh* planes, const field::Furnace* furnace) {
   const auto& inputs = one.record.inputs;
   return {.name = inputs.name,
           .load = inputs.load,
@@ -109,11 +128,31 @@ CheckedCase view_of(const CfdCase& one) {
           .centre = &one.centre,
           .volume = one.volume,
           .fields = one.fields,
-          .values = ConstMapF(one.values.data(), one.values.rows(), one.values.cols())};
+          .values = ConstMapF(one.values.data(), one.values.rows(), one.values.cols()),
+          .mesh = planes,
+          .furnace = furnace};
+}
+
+std::optional<field::Mesh> layers_of(const CfdCase& one) {
+  const auto n = one.centre.rows();
+  const auto z = one.centre.col(2);
+  const double touch = 1e-5 * (z.maxCoeff() - z.minCoeff());  // exports keep centres as float32
+  Eigen::Index n_columns = 1;
+  while (n_columns < n && std::abs(z[n_columns] - z[0]) <= touch) ++n_columns;
+  if (n % n_columns != 0 || n == n_columns) return std::nullopt;
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const bool begins_layer = i % n_columns == 0;
+    if (begins_layer ? z[i] <= z[i - 1] + touch : std::abs(z[i] - z[i - 1]) > touch) return std::nullopt;
+  }
+  return field::Mesh{.n_planes = static_cast<std::size_t>(n / n_columns),
+                     .n_columns = static_cast<std::size_t>(n_columns),
+                     .centre = one.centre,
+                     .volume = one.volume};
 }
 
 CheckedCase view_of(const field::CaseRecord& record, const MatrixF& values, const field::Mesh& mesh,
-                    const field::InputSchema& schema, std::span<const field::FieldInfo> fields) {
+                    const field::InputSchema& schema, std::span<const field::FieldInfo> fields,
+                    const field::Furnace* furnace, std::optional<Coverage> coverage) {
   return {.name = record.inputs.name,
           .load = record.inputs.load,
           .schema = &schema,
@@ -121,7 +160,10 @@ CheckedCase view_of(const field::CaseRecord& record, const MatrixF& values, cons
           .centre = &mesh.centre,
           .volume = mesh.volume,
           .fields = fields,
-          .values = ConstMapF(values.data(), values.rows(), values.cols())};
+          .values = ConstMapF(values.data(), values.rows(), values.cols()),
+          .mesh = &mesh,
+          .furnace = furnace,
+          .coverage = coverage};
 }
 
 void Checker::add(const CheckedCase& view) {
@@ -146,7 +188,8 @@ void Checker::add(const field::SnapshotStore& store) {
       for (std::size_t f = 0; f < fields.size(); ++f) {
         values.row(static_cast<Eigen::Index>(f)) = store.read(fields[f].name, one);
       }
-      add(view_of(record, values, store.mesh(), store.schema(), fields));
+      const auto& furnace = store.furnace();
+      add(view_of(record, values, store.mesh(), store.schema(), fields, furnace ? &*furnace : nullptr));
     } catch (const InputError& error) {
       add_unreadable(record.inputs.name, error.what());
     }
@@ -185,6 +228,7 @@ std::vector<Finding> Checker::findings() const {
   if (!cases_.empty()) {
     const auto same = comparable(cases_, found);
     add_mistakes(same, found);
+    add_physics(same, found);
     add_twins(same, found);
     add_outliers(same, found);
     add_dead_inputs(same, found);

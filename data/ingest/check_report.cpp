@@ -1,7 +1,9 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "elrom/ingest/check.hpp"
 #include "elrom/io/file_kind.hpp"
+#include "value_range.hpp"
 
 namespace elrom::ingest {
 
@@ -10,6 +12,12 @@ std::string to_json(const Checker& checker, std::span<const Finding> findings) {
   auto report = io::json_head<ordered_json>(io::kinds::check);
   report["cases"] = ordered_json::array();
   for (const auto& one : checker.cases()) report["cases"].push_back(one.name);
+  report["readings"] = ordered_json::array();
+  for (const auto& one : checker.cases()) {
+    for (const auto& reading : one.readings)
+      report["readings"].push_back(
+          {{"case", one.name}, {"kind", reading.check}, {"what", reading.what}, {"value", reading.value}});
+  }
   report["findings"] = ordered_json::array();
   std::map<std::string, int> counts{{"note", 0}, {"suspicious", 0}, {"wrong", 0}};
   for (const auto& finding : findings) {
@@ -19,6 +27,11 @@ std::string to_json(const Checker& checker, std::span<const Finding> findings) {
                        {"case", finding.case_name},
                        {"quantity", finding.quantity}};
     if (finding.cell >= 0) entry["cell"] = finding.cell;
+    if (std::isfinite(finding.value)) {
+      entry["value"] = finding.value;
+      entry["low"] = number_or_null(finding.low);
+      entry["high"] = number_or_null(finding.high);
+    }
     entry["message"] = finding.message;
     report["findings"].push_back(std::move(entry));
   }

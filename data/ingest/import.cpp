@@ -4,69 +4,14 @@
 #include <iterator>
 
 #include "conform.hpp"
-#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/ingest/resample.hpp"
+#include "elrom/ingest/case_files.hpp"
+#include "elrom/ingest/onto_mesh.hpp"
 
 namespace elrom::ingest {
 
 namespace {
-
-std::string extent_text(const MatrixD& centre) {
-  std::vector<std::string> parts;
-  for (Eigen::Index d = 0; d < 3; ++d) {
-    parts.push_back(base::rounded(centre.col(d).minCoeff(), 3) + " to " +
-                    base::rounded(centre.col(d).maxCoeff(), 3));
-  }
-  return base::join(parts, ", ") + " m";
-}
-
-// A mesh in millimetres, or of another furnace, would resample without complaint.
-void expect_same_place(const CfdCase& one, const field::Mesh& mesh) {
-  constexpr double least_overlap = 0.5, most_size = 1.5;
-  for (Eigen::Index d = 0; d < 3; ++d) {
-    const double low = mesh.centre.col(d).minCoeff(), high = mesh.centre.col(d).maxCoeff();
-    const double from = one.centre.col(d).minCoeff(), to = one.centre.col(d).maxCoeff();
-    const double shared = std::min(high, to) - std::max(low, from);
-    const double size = high - low;
-    if (size <= 0 || to - from <= 0) continue;  // one layer of cells has no extent between centres
-    if (shared >= least_overlap * size && to - from <= most_size * size) continue;
-    throw InputError({.what = "the case does not lie on the reduced mesh",
-                      .where = one.record.source,
-                      .found = "cell centres x, y, z at " + extent_text(one.centre),
-                      .expected = extent_text(mesh.centre),
-                      .advice = "is it another furnace, or not in metres?"});
-  }
-}
-
-// Operators between one CFD mesh and the reduced mesh, kept while the files bring the same mesh.
-class Exchange {
- public:
-  Exchange(const field::Mesh& mesh, int n_threads, const std::stop_token& stop)
-      : mesh_(mesh), n_threads_(n_threads), stop_(stop) {}
-
-  void use_mesh_of(const CfdCase& one) {
-    base::Sha256 hash;
-    hash.add(std::as_bytes(std::span(one.centre.data(), static_cast<std::size_t>(one.centre.size()))));
-    hash.add(std::as_bytes(std::span(one.volume)));
-    const auto digest = hash.hex();
-    if (digest == digest_) return;
-    expect_same_place(one, mesh_);
-    there_.emplace(one.centre, one.volume, mesh_.centre, n_threads_, stop_);
-    back_.emplace(mesh_.centre, mesh_.volume, one.centre, n_threads_, stop_);
-    digest_ = digest;
-  }
-  [[nodiscard]] const Resampler& there() const { return *there_; }
-  [[nodiscard]] const Resampler& back() const { return *back_; }
-
- private:
-  const field::Mesh& mesh_;
-  int n_threads_;
-  std::stop_token stop_;
-  std::string digest_;
-  std::optional<Resampler> there_, back_;
-};
 
 // Who has other fields is told how to have them.
 void expect_standard_fields(const CfdCase& first) {
@@ -158,7 +103,7 @@ class Import {
         log_(log),
         stop_(stop),
         mesh_(mesh_of(options)),
-        exchange_(mesh_, options.n_threads, stop),
+        onto_mesh_(mesh_, options.n_threads, stop),
         furnace_file_(options, log) {
     if (!options.cases.empty()) table_ = read_cases_table(options.cases);
     if (!std::filesystem::exists(options.store)) return;
@@ -172,7 +117,7 @@ class Import {
   ImportSummary run() {
     for (std::size_t i = 0; i < options_.files.size(); ++i) {
       if (stop_.stop_requested()) throw Interrupted("import stopped; the store is as it was");
-      take(options_.files[i]);
+      take_or_refuse(options_.files[i]);
       log_.progress({.task = "import",
                      .done = static_cast<std::int64_t>(i + 1),
                      .total = static_cast<std::int64_t>(options_.files.size()),
@@ -202,14 +147,31 @@ class Import {
                       .advice = "give it by --mesh, or make one by 'elrom-data mesh'"});
   }
 
+  [[nodiscard]] const field::Furnace* furnace_now() const {
+    return furnace_ ? &*furnace_ : in_store_ ? &*in_store_ : nullptr;
+  }
+
   void open_writer(const std::optional<field::Furnace>& in_store) {
+    in_store_ = in_store;
     furnace_ = furnace_file_.use(schema_, in_store);
     if (furnace_) summary_.fields = furnace_->limited(std::move(summary_.fields));
     writer_.emplace(options_.store, mesh_, schema_, summary_.fields, furnace_);
   }
 
+  void take_or_refuse(const std::filesystem::path& file) {
+    if (!options_.refused) return take(file);
+    try {
+      take(file);
+    } catch (const InputError& error) {
+      options_.refused(file, error.what());
+    }
+  }
+
   void take(const std::filesystem::path& file) {
     auto one = read_case(file);
+    auto& record = one.record;
+    if (record.source.empty()) record.source = std::filesystem::absolute(file).filename().string();
+    if (record.source_digest.empty()) record.source_digest = case_digest(file);
     if (table_) complete_inputs(one, *table_);
     if (!writer_) {
       if (one.schema.size() == 0) {
@@ -222,21 +184,12 @@ class Import {
       (void)conform_fields(one, summary_.fields);  // a first case that lacks a field begins no file
       open_writer(std::nullopt);
     }
-    const auto snapshot = resample(one);
-    if (options_.watch) options_.watch(snapshot, mesh_, schema_, summary_.fields);
+    const auto snapshot = onto_mesh_.bring(one, schema_, summary_.fields);
     writer_->add(snapshot);
-    taken_.push_back({snapshot.record.inputs.name, snapshot.record.resampling_error,
-                      exchange_.there().n_outside(), exchange_.there().n_target()});
-  }
-
-  field::Snapshot resample(const CfdCase& one) {
-    field::Snapshot snapshot{.record = one.record};
-    snapshot.record.inputs.values = conform_inputs(one, schema_);
-    const auto values = conform_fields(one, summary_.fields);
-    exchange_.use_mesh_of(one);
-    snapshot.fields = exchange_.there().apply(values);
-    snapshot.record.resampling_error = round_trip_error(values, exchange_.back().apply(snapshot.fields));
-    return snapshot;
+    if (options_.watch)
+      options_.watch({file, snapshot, mesh_, schema_, summary_.fields, furnace_now(), onto_mesh_.coverage()});
+    taken_.push_back({snapshot.record.inputs.name, snapshot.record.resampling_error, onto_mesh_.n_outside(),
+                      mesh_.n_cells()});
   }
 
   void leave_out(const std::set<std::string>& names) {
@@ -246,7 +199,7 @@ class Import {
   }
 
   void sum_up() {
-    summary_.n_added = taken_.size();
+    for (const auto& one : taken_) summary_.added.push_back(one.name);
     summary_.n_cases += taken_.size();
     summary_.mean_error.assign(summary_.fields.size(), 0);
     summary_.largest_error.assign(summary_.fields.size(), 0);
@@ -264,10 +217,11 @@ class Import {
   Log& log_;
   std::stop_token stop_;
   field::Mesh mesh_;
-  Exchange exchange_;
+  OntoMesh onto_mesh_;
   FurnaceFile furnace_file_;
   std::optional<CasesTable> table_;
   field::InputSchema schema_;
+  std::optional<field::Furnace> in_store_;
   std::optional<field::Furnace> furnace_;  // that the store did not carry before
   std::optional<field::SnapshotWriter> writer_;
   std::vector<Taken> taken_;

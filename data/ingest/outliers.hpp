@@ -23,6 +23,7 @@ struct Outlier {
   std::size_t i_case = 0;
   std::string field;    ///< which lies apart
   double distance = 0;  ///< relative to the usual distance
+  double limit = 0;     ///< of that distance
 };
 
 /// Robust distances in a POD space of every field (ROBPCA's two distances, Hubert et al. 2005, on spherical

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <string_view>
 
+#include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/ingest/case_files.hpp"
 #include "elrom/ingest/cfd_case.hpp"
@@ -45,6 +47,18 @@ CfdCase read_case(const std::filesystem::path& path) {
   if (!is_hdf5(path)) return read_fluent_ascii(path);
   io::survive(path, "case", [&] { (void)read_el3d(path); });
   return read_el3d(path);
+}
+
+std::string case_digest(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return base::sha256_file(path);
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  base::Sha256 hash;
+  for (const auto& file : files)
+    hash.add(file.lexically_relative(path).string()).add(base::sha256_file(file));
+  return hash.hex();
 }
 
 }  // namespace elrom::ingest

@@ -91,6 +91,21 @@ bool in_hull_of_row(const Row& row, const CellCloud& sources, const Point& x, do
   return PointHull(std::move(points)).contains(x, tolerance);
 }
 
+double square_between(const Point& a, const Point& b) {
+  double sum = 0;
+  for (std::size_t d = 0; d < 3; ++d) sum += (a[d] - b[d]) * (a[d] - b[d]);
+  return sum;
+}
+
+bool is_out_of_reach(const CellCloud& sources, const Point& x) {
+  const auto cell = static_cast<std::size_t>(sources.nearest(x, 1).front());
+  const auto y = sources.at(cell);
+  double reach = 0;
+  for (const auto& [n, c] : sources.gradient(cell).entries)
+    reach = std::max(reach, square_between(y, sources.at(static_cast<std::size_t>(n))));
+  return square_between(x, y) > reach;
+}
+
 }  // namespace
 
 Resampler::Resampler(const MatrixD& source_centre, std::span<const double> source_volume,
@@ -106,6 +121,7 @@ Resampler::Resampler(const MatrixD& source_centre, std::span<const double> sourc
   const Builder builder(sources, source_volume);
   std::vector<Row> rows(targets.size());
   limits_.resize(targets.size());
+  is_far_.resize(targets.size());
   base::parallel_for(
       targets.size(), n_threads,
       [&](std::size_t t, int) {
@@ -116,6 +132,7 @@ Resampler::Resampler(const MatrixD& source_centre, std::span<const double> sourc
         } else {
           limits_[t] = hull.contains(x, tolerance) ? Limit::everything : Limit::stencil_outside;
         }
+        is_far_[t] = limits_[t] == Limit::stencil_outside && is_out_of_reach(sources, x) ? 1 : 0;
       },
       stop);
   begin_.assign(1, 0);
@@ -130,6 +147,10 @@ Resampler::Resampler(const MatrixD& source_centre, std::span<const double> sourc
 
 std::size_t Resampler::n_outside() const {
   return static_cast<std::size_t>(std::count(limits_.begin(), limits_.end(), Limit::stencil_outside));
+}
+
+std::size_t Resampler::n_far() const {
+  return static_cast<std::size_t>(std::count(is_far_.begin(), is_far_.end(), 1));
 }
 
 void Resampler::apply(std::span<const float> source, std::span<float> target) const {

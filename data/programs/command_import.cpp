@@ -8,19 +8,18 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
-#include "elrom/ingest/import_checked.hpp"
+#include "judgement_options.hpp"
 
 namespace elrom::programs {
 
 namespace {
 
-int run_import(const ingest::ImportOptions& options, const std::string& policy) {
+int run_import(const ingest::ImportOptions& options, const JudgementOptions& judgement) {
   const auto log = make_console_log();
-  const auto summary =
-      ingest::import_checked(options, ingest::policy_of(policy), *log, base::interrupt_token());
-  fmt::print("{} {} added to {}, which now holds {}\n", summary.n_added,
-             summary.n_added == 1 ? "case" : "cases", options.store.string(), summary.n_cases);
-  if (summary.n_added == 0) return 0;
+  const auto summary = ingest::import_checked(options, judgement.read(), *log, base::interrupt_token());
+  fmt::print("{} {} added to {}, which now holds {}\n", summary.added.size(),
+             summary.added.size() == 1 ? "case" : "cases", options.store.string(), summary.n_cases);
+  if (summary.added.size() == 0) return 0;
   fmt::print("resampling error, to the reduced mesh and back (rms / standard deviation of the field):\n");
   fmt::print("  {:<24}{:>10}{:>10}\n", "field", "mean", "largest");
   for (std::size_t f = 0; f < summary.fields.size(); ++f) {
@@ -67,18 +66,13 @@ mesh and append them to a snapshot store. All files are taken or none: the store
   command->add_option("--threads", options->n_threads, "Processor threads")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  auto policy = std::make_shared<std::string>("refuse");
-  command
-      ->add_option("--on-suspicious", *policy,
-                   R"(A case that cannot be right beside the others (mistaken unit, the same case twice):
-refuse everything, drop that case, or keep it with a warning)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"refuse", "drop", "keep"}));
+  auto judgement = std::make_shared<JudgementOptions>();
+  add_judgement(*command, *judgement);
   command->add_option("FILE", options->files, "CFD results, one a case")->type_name("FILE...");
-  command->callback([options, policy, &chosen] {
+  command->callback([options, judgement, &chosen] {
     if (options->files.empty() && options->furnace.empty())
       throw UsageError("elrom-data import needs FILE: CFD results, one a case");
-    chosen = [options, policy] { return run_import(*options, *policy); };
+    chosen = [options, judgement] { return run_import(*options, *judgement); };
   });
 }
 

@@ -15,6 +15,8 @@ void add_import(CLI::App& program, Work& chosen);
 void add_mesh(CLI::App& program, Work& chosen);
 void add_inspect(CLI::App& program, Work& chosen);
 void add_check(CLI::App& program, Work& chosen);
+void add_remove(CLI::App& program, Work& chosen);
+void add_watch(CLI::App& program, Work& chosen);
 void add_generate(CLI::App& program, Work& chosen);
 void add_collisions(CLI::App& program, Work& chosen);
 

@@ -17,11 +17,14 @@ int run(int argc, char** argv) {
   elrom::programs::add_import(program, chosen);
   elrom::programs::add_inspect(program, chosen);
   elrom::programs::add_check(program, chosen);
+  elrom::programs::add_remove(program, chosen);
+  elrom::programs::add_watch(program, chosen);
   elrom::programs::add_mesh(program, chosen);
   elrom::programs::add_generate(program, chosen);
   elrom::programs::add_collisions(program, chosen);
   program.footer(
-      "Exit status: 0 done, 2 wrong command line, 3 wrong input, 1 trouble of the machine, 130 interrupted.");
+      "Exit status: 0 done, 2 wrong command line, 3 wrong input, 8 nothing new (watch), 1 trouble of the machine, "
+      "130 interrupted.");
   if (const auto status = program.parse(argc, argv)) return *status;
   return chosen();
 }

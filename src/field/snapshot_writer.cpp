@@ -65,7 +65,7 @@ struct SnapshotWriter::Impl {
   InputSchema schema;
   std::vector<FieldInfo> fields;
   std::optional<Furnace> furnace;
-  base::FileLock lock;
+  std::optional<base::FileLock> lock;  // nothing: who made this holds it
   std::unique_ptr<base::AtomicFile> target;
   std::optional<io::Hdf5File> file;
   std::vector<CaseRecord> cases;
@@ -78,11 +78,14 @@ struct SnapshotWriter::Impl {
       continue_from_old();
     else
       start_new();
-    if (furnace) {
-      detail::write_furnace(*file, *furnace);
-      io::write_kind(*file, io::kinds::snapshots);  // an older store may be continued
-    }
+    describe();
     n_old = cases.size();
+  }
+
+  void describe() {
+    if (!furnace) return;
+    detail::write_furnace(*file, *furnace);
+    io::write_kind(*file, io::kinds::snapshots);  // an older store may be continued
   }
 
   void start_new() {
@@ -115,6 +118,12 @@ struct SnapshotWriter::Impl {
                                 {row.data(), static_cast<std::size_t>(row.size())});
     }
     cases.push_back(record);
+  }
+
+  void commit() {
+    detail::write_cases(*file, cases, schema.size(), fields.size());
+    file->close();
+    target->commit();
   }
 
   [[nodiscard]] MatrixF fields_of(const io::Hdf5File& from, std::size_t i_case) const {
@@ -166,8 +175,8 @@ struct SnapshotWriter::Impl {
 
 SnapshotWriter::SnapshotWriter(const std::filesystem::path& path, const Mesh& mesh, const InputSchema& schema,
                                const std::vector<FieldInfo>& fields, const std::optional<Furnace>& furnace)
-    : impl_(new Impl{
-          path, mesh, schema, fields, furnace, base::FileLock(base::lock_beside(path)), {}, {}, {}}) {
+    : impl_(new Impl{path, mesh, schema, fields, furnace, {}, {}, {}, {}}) {
+  impl_->lock.emplace(base::lock_beside(path));
   base::remove_remains(path);
   impl_->begin();
 }
@@ -193,10 +202,27 @@ void SnapshotWriter::leave_out(const std::set<std::string>& names) {
     if (!names.contains(cases[i].inputs.name)) impl_->append(cases[i], impl_->fields_of(file, i));
 }
 
-void SnapshotWriter::commit() {
-  detail::write_cases(*impl_->file, impl_->cases, impl_->schema.size(), impl_->fields.size());
-  impl_->file->close();
-  impl_->target->commit();
+void SnapshotWriter::commit() { impl_->commit(); }
+
+void remove_cases(const std::filesystem::path& path, const std::set<std::string>& names) {
+  const base::FileLock lock(base::lock_beside(path));
+  base::remove_remains(path);
+  const auto old = SnapshotStore::open(path);
+  SnapshotWriter::Impl rest{path, old.mesh(), old.schema(), old.fields(), old.furnace(), std::nullopt, {},
+                            {},   {}};
+  rest.target = std::make_unique<base::AtomicFile>(path);
+  rest.start_new();
+  rest.describe();
+  MatrixF values(static_cast<Eigen::Index>(rest.fields.size()),
+                 static_cast<Eigen::Index>(rest.mesh.n_cells()));
+  for (std::size_t i = 0; i < old.n_cases(); ++i) {
+    if (names.contains(old.cases()[i].inputs.name)) continue;
+    const std::size_t one[] = {i};
+    for (std::size_t f = 0; f < rest.fields.size(); ++f)
+      values.row(static_cast<Eigen::Index>(f)) = old.read(rest.fields[f].name, one);
+    rest.append(old.cases()[i], values);
+  }
+  rest.commit();
 }
 
 }  // namespace elrom::field

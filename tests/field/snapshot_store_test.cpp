@@ -212,6 +212,34 @@ TEST_F(Store, CasesTakenOutAgainLeaveTheBytesOfAStoreThatNeverHadThem) {
   EXPECT_EQ(base::sha256_file(path_), expected);
 }
 
+TEST_F(Store, RemovedCasesLeaveTheBytesOfAStoreThatNeverHadThem) {
+  {
+    SnapshotWriter writer(path_, mesh_, schema_, fields_, small_furnace());
+    for (const auto& [name, value] : {std::pair("b", 2.0F), std::pair("d", 4.0F)})
+      writer.add(snapshot(name, value));
+    writer.commit();
+  }
+  const auto expected = test::read_bytes(path_);
+  std::filesystem::remove(path_);
+  SnapshotWriter(path_, mesh_, schema_, fields_, small_furnace()).commit();
+  write({{"a", 1}, {"b", 2}});
+  write({{"c", 3}, {"d", 4}});
+
+  remove_cases(path_, {"a", "c", "not there"});
+
+  EXPECT_EQ(test::read_bytes(path_), expected);
+}
+
+TEST_F(Store, ARemovalThatFailsLeavesTheStoreAsItWas) {
+  write({{"a", 1}, {"b", 2}});
+  const auto before = test::read_bytes(path_);
+  {
+    const SnapshotWriter other(path_, mesh_, schema_, fields_);
+    EXPECT_ERROR(UsageError, "another process is at work here", remove_cases(path_, {"a"}));
+  }
+  EXPECT_EQ(test::read_bytes(path_), before);
+}
+
 TEST_F(Store, OneWriterAtATime) {
   const SnapshotWriter first(path_, mesh_, schema_, fields_);
 

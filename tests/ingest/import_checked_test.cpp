@@ -60,7 +60,7 @@ TEST_F(ImportChecked, RefusesEverythingForAMistakenUnit) {
 TEST_F(ImportChecked, DropsTheCaseAndTakesTheOthers) {
   const auto summary = import_checked(options_, Policy::drop, log_);
 
-  EXPECT_EQ(summary.n_added, n_cases - 1u);
+  EXPECT_EQ(summary.added.size(), n_cases - 1u);
   EXPECT_TRUE(field::SnapshotStore::open(options_.store).find("train_004").empty());
   EXPECT_THAT(log_.warnings, HasSubstr("left out"));
 }
@@ -79,7 +79,7 @@ TEST_F(ImportChecked, ReadsEachFileOnceWhateverIsDropped) {
     const std::vector<std::filesystem::path>& files_;
   } log(options_.files);
 
-  EXPECT_EQ(import_checked(options_, Policy::drop, log).n_added, n_cases - 1u);
+  EXPECT_EQ(import_checked(options_, Policy::drop, log).added.size(), n_cases - 1u);
   for (const auto& file : options_.files) EXPECT_FALSE(std::filesystem::exists(file));
 }
 
@@ -97,7 +97,7 @@ TEST_F(ImportChecked, ADroppedCaseLeavesNoTrace) {
 TEST_F(ImportChecked, KeepsTheCaseWithAWarning) {
   const auto summary = import_checked(options_, Policy::keep, log_);
 
-  EXPECT_EQ(summary.n_added, static_cast<std::size_t>(n_cases));
+  EXPECT_EQ(summary.added.size(), static_cast<std::size_t>(n_cases));
   EXPECT_THAT(log_.warnings, AllOf(HasSubstr("train_004, pressure"), HasSubstr("kept")));
 }
 

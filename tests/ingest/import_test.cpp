@@ -53,7 +53,7 @@ TEST_F(Importing, FillsAStoreInTheOrderOfTheFiles) {
   const auto summary = take({write("b", 0), write("a", 1)});
 
   const auto store = field::SnapshotStore::open(options_.store);
-  EXPECT_EQ(summary.n_added, 2U);
+  EXPECT_EQ(summary.added.size(), 2U);
   EXPECT_EQ(summary.n_cases, 2U);
   EXPECT_EQ(store.cases()[0].inputs.name, "b");
   EXPECT_EQ(store.fields().size(), 9U);
@@ -69,7 +69,7 @@ TEST_F(Importing, AddsToAStoreWithoutAMeshFile) {
 
   const auto summary = take({write("b", 1)});
 
-  EXPECT_EQ(summary.n_added, 1U);
+  EXPECT_EQ(summary.added.size(), 1U);
   EXPECT_EQ(summary.n_cases, 2U);
 }
 
@@ -167,7 +167,7 @@ TEST_F(Importing, ATableMustAgreeWithTheExport) {
   options_.cases = folder_ / "cases.csv";
   std::ofstream(options_.cases) << "case,primary_air [t/h],gas_temperature [degC]\na,576.01,800\nb,500,800\n";
 
-  EXPECT_EQ(take({write("a", 0)}).n_added, 1U);
+  EXPECT_EQ(take({write("a", 0)}).added.size(), 1U);
   EXPECT_ERROR(InputError, "'primary_air' of case 'b' differs from its export", take({write("b", 1)}));
 }
 
@@ -179,7 +179,7 @@ TEST_F(Importing, CasesCanBeLeftOut) {
 
   const auto summary = take({write("a", 0), write("b", 1), write("c", 2)});
 
-  EXPECT_EQ(summary.n_added, 2U);
+  EXPECT_EQ(summary.added.size(), 2U);
   EXPECT_EQ(summary.n_cases, 2U);
   EXPECT_EQ(summary.mean_error, others.mean_error);
   EXPECT_EQ(summary.largest_error, others.largest_error);
@@ -189,7 +189,7 @@ TEST_F(Importing, CasesCanBeLeftOut) {
 TEST_F(Importing, WithoutAnyCaseLeftThereIsNoStore) {
   options_.leave_out = [] { return std::set<std::string>{"a"}; };
 
-  EXPECT_EQ(take({write("a", 0)}).n_added, 0U);
+  EXPECT_EQ(take({write("a", 0)}).added.size(), 0U);
   EXPECT_FALSE(std::filesystem::exists(options_.store));
 }
 
@@ -257,7 +257,7 @@ TEST_F(ImportingFurnaces, AStoreKeepsItsOwnUntilAnotherIsNamed) {
   EXPECT_THAT(take_and_listen({write("c", 2)}), HasSubstr("the store keeps its furnace description"));
   EXPECT_EQ(in_store(), "first");
   options_.furnace = folder_ / "mesh.toml";
-  EXPECT_EQ(take({}).n_added, 0U);  // no case is needed for that
+  EXPECT_EQ(take({}).added.size(), 0U);  // no case is needed for that
   EXPECT_EQ(in_store(), "second");
   EXPECT_EQ(field::SnapshotStore::open(options_.store).n_cases(), 3U);
 }

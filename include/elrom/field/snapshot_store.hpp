@@ -92,8 +92,14 @@ class SnapshotWriter {
   void commit();
 
  private:
+  friend void remove_cases(const std::filesystem::path&, const std::set<std::string>&);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The store without these cases, as a new file that replaces the old one whole, or not at all; its bytes are
+/// those of a store that never had them. Names that are not there change nothing. Holds the store's lock.
+/// @throws InputError when it is no store or a case that stays cannot be read; the store is then as it was
+void remove_cases(const std::filesystem::path& path, const std::set<std::string>& names);
 
 }  // namespace elrom::field

@@ -18,4 +18,7 @@ namespace elrom::ingest {
 /// when it cannot be read, or crashes the HDF5 library
 [[nodiscard]] bool is_snapshot_store(const std::filesystem::path& path);
 
+/// SHA-256 of a case: of its file, or of a directory's files with their names. @throws InputError
+[[nodiscard]] std::string case_digest(const std::filesystem::path& path);
+
 }  // namespace elrom::ingest

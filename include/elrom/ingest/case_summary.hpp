@@ -6,15 +6,25 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/field/catalogue.hpp"
+#include "elrom/field/furnace.hpp"
+#include "elrom/field/mesh.hpp"
 #include "elrom/math/matrix.hpp"
 
 namespace elrom::ingest {
+
+/// How well the CFD's mesh and the reduced mesh lie on each other: shares of cells beyond the edge of the
+/// other mesh by more than its cells' size.
+struct Coverage {
+  double uncovered = 0;  ///< of the reduced cells
+  double beyond = 0;     ///< of the CFD's cells
+};
 
 /// A case as the checks look at it, on any mesh; nothing is owned.
 struct CheckedCase {
@@ -26,6 +36,10 @@ struct CheckedCase {
   std::span<const double> volume;              ///< [m3], (n_cells); empty: not known, cells count alike
   std::span<const field::FieldInfo> fields;
   ConstMapF values;  ///< SI, (n_fields, n_cells)
+  /// Of these centres and volumes, where cells come plane by plane; nullptr: no planes are known.
+  const field::Mesh* mesh = nullptr;
+  const field::Furnace* furnace = nullptr;  ///< nullptr: nobody described it
+  std::optional<Coverage> coverage = {};    ///< nothing: not resampled here
 };
 
 /// Positive numbers that a field's unit scales. NaN where a field or the volumes are missing.
@@ -53,6 +67,20 @@ struct BadCell {
   std::int64_t count = 0;  ///< cells of this field that are wrong in the same way
 };
 
+/// One number of a case that physics bounds, or that the other cases bound.
+struct Reading {
+  std::string check;     ///< kind of the finding when it is out: "gas_balance"
+  std::string quantity;  ///< field or input it tells about; may be empty
+  std::string what;      ///< "gas flow between 7.8 and 40.6 m over the inlets' below"; the same in every case
+  double value = 0;
+  /// What physics allows, whatever the furnace; wide.
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  /// Spread among other cases is taken to be at least this: of the value, or of its logarithm; infinite:
+  /// physics alone judges.
+  double least_spread = 0;
+  bool logarithmic = false;  ///< other cases are compared by logarithms; value > 0
+};
+
 struct CaseSummary {
   std::string name;
   double load = 0;
@@ -66,6 +94,7 @@ struct CaseSummary {
   MatrixF sketch;  //!< volume-weighted means in a coarse grid of boxes, (n_fields, n_boxes); 0 in empty boxes
   std::string digest;  //!< of the field values
   std::vector<BadCell> not_finite, out_of_bounds;
+  std::vector<Reading> readings;  //!< of every check that the case has the quantities for
 
   [[nodiscard]] double measure(Measure which) const { return measures[static_cast<std::size_t>(which)]; }
 };

@@ -23,19 +23,32 @@ enum class Severity {
 
 struct Finding {
   std::string kind;  ///< "unreadable", "not_finite", "out_of_bounds", "unit", "far_input", "duplicate",
-                     ///< "near_duplicate", "outlier", "dead_cells", "dead_input", "other_layout"
+      ///< "near_duplicate", "outlier", "dead_cells", "dead_input", "other_layout", "mesh_cover",
+      ///< "flow_direction", "gas_balance", "solids_inventory", "roughness"
   Severity severity = Severity::suspicious;
   std::string case_name;   ///< empty: all cases
   std::string quantity;    ///< field or input
   std::int64_t cell = -1;  ///< first cell concerned; -1: none
   std::string message;     ///< one sentence, complete in itself
+  // Where a number tells: it, and the range that it lies out of. NaN: no number.
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
 };
 
-[[nodiscard]] CheckedCase view_of(const CfdCase& one);
+/// Kinds of findings on single cases: what `--accept` takes.
+[[nodiscard]] const std::vector<std::string>& finding_kinds();
+
+/// On the CFD's own mesh. @param planes of the same cells, see layers_of(); nullptr: none
+[[nodiscard]] CheckedCase view_of(const CfdCase& one, const field::Mesh* planes = nullptr,
+                                  const field::Furnace* furnace = nullptr);
+/// The CFD's cells as planes, where the export has them layer by layer with as many cells in each.
+[[nodiscard]] std::optional<field::Mesh> layers_of(const CfdCase& one);
 /// @param fields (n_fields, n_cells); everything must outlive the view
 [[nodiscard]] CheckedCase view_of(const field::CaseRecord& record, const MatrixF& values,
                                   const field::Mesh& mesh, const field::InputSchema& schema,
-                                  std::span<const field::FieldInfo> fields);
+                                  std::span<const field::FieldInfo> fields,
+                                  const field::Furnace* furnace = nullptr,
+                                  std::optional<Coverage> coverage = std::nullopt);
 
 /// Takes cases one after another and keeps a summary of each. Thread rule: one thread at a time.
 class Checker {

@@ -13,9 +13,21 @@
 #include "elrom/base/log.hpp"
 #include "elrom/field/catalogue.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/ingest/case_summary.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 
 namespace elrom::ingest {
+
+/// A case on its way into the store, on the reduced mesh; nothing is owned.
+struct EnteringCase {
+  const std::filesystem::path& file;
+  const field::Snapshot& snapshot;
+  const field::Mesh& mesh;
+  const field::InputSchema& schema;
+  std::span<const field::FieldInfo> fields;
+  const field::Furnace* furnace;  ///< that the store carries from now on; nullptr: none
+  Coverage coverage;
+};
 
 struct ImportOptions {
   std::filesystem::path mesh;   ///< the reduced mesh; not needed to add to a store
@@ -26,10 +38,11 @@ struct ImportOptions {
   std::filesystem::path cases;  ///< table of boundary conditions, for formats that carry none; may be empty
   std::vector<std::string> fields;  ///< of a new store; empty: the nine standard fields
   int n_threads = 1;
-  /// Sees every case as it enters the store, on the reduced mesh. Empty: nobody looks.
-  std::function<void(const field::Snapshot&, const field::Mesh&, const field::InputSchema&,
-                     std::span<const field::FieldInfo>)>
-      watch = {};
+  /// Sees every case as it enters the store. Empty: nobody looks.
+  std::function<void(const EnteringCase&)> watch = {};
+  /// Told of every file that cannot be taken, and why; the others are taken without it. Empty: the first such
+  /// file ends the import.
+  std::function<void(const std::filesystem::path&, const std::string& reason)> refused = {};
   /// Called once before the store is replaced: names of the new cases that are not to stay. Throws to leave
   /// the store as it was. Empty: all stay.
   std::function<std::set<std::string>()> leave_out = {};
@@ -38,7 +51,8 @@ struct ImportOptions {
 struct ImportSummary {
   std::vector<field::FieldInfo> fields;
   std::vector<double> mean_error, largest_error;  ///< of resampling, there and back, (n_fields)
-  std::size_t n_added = 0, n_cases = 0;           ///< by this call; in the store now
+  std::vector<std::string> added;                 ///< names, by this call
+  std::size_t n_cases = 0;                        ///< in the store now
   std::size_t n_outside = 0, n_cells = 0;  ///< reduced cells outside the hull of the last case's cell centres
 };
 

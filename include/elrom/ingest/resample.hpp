@@ -43,6 +43,9 @@ class Resampler {
   [[nodiscard]] std::size_t n_target() const { return limits_.size(); }
   /// Targets outside the hull of all source centres.
   [[nodiscard]] std::size_t n_outside() const;
+  /// Those of them that the source does not reach: farther from the nearest source cell than that is from the
+  /// neighbours that its gradient is made of.
+  [[nodiscard]] std::size_t n_far() const;
   /// @param source (n_source)  @param target (n_target)
   void apply(std::span<const float> source, std::span<float> target) const;
   /// Every row: (n_fields, n_source) -> (n_fields, n_target).
@@ -55,6 +58,7 @@ class Resampler {
   std::vector<std::int32_t> cell_;  //!< source cell, (n_entries)
   std::vector<double> weight_;      //!< (n_entries)
   std::vector<Limit> limits_;       //!< (n_target)
+  std::vector<char> is_far_;        //!< (n_target)
 };
 
 /// Error of going to the reduced mesh and back, per field: root mean square over cells, relative to the

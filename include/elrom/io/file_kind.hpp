@@ -28,7 +28,7 @@ inline constexpr FileKind snapshots{
 inline constexpr FileKind bundle{"elrom-bundle", {1, 2}, "train again with elrom-train run"};
 inline constexpr FileKind prediction{"elrom-prediction", {1, 1}, "predict again with elrom-predict"};
 inline constexpr FileKind manifest{"elrom-manifest", {1, 0}, "fetch the shipped cases again"};
-inline constexpr FileKind check{"elrom-check", {1, 0}, "check again with elrom-data check"};
+inline constexpr FileKind check{"elrom-check", {1, 1}, "check again with elrom-data check"};
 inline constexpr FileKind split{"elrom-split", {1, 1}, "train again with elrom-train run"};
 inline constexpr FileKind timing{"elrom-timing", {1, 1}, "remove it"};
 inline constexpr FileKind trials{"elrom-trials", {1, 0}, "remove it to search anew"};

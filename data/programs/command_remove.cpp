@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/field/snapshot_store.hpp"
+
+namespace elrom::programs {
+namespace {
+
+struct Options {
+  std::filesystem::path store;
+  std::vector<std::string> patterns;
+};
+
+/// Cases that any of the patterns matches, in the store's order. @throws InputError for one that matches none
+std::vector<std::string> matching(const field::SnapshotStore& store,
+                                  const std::vector<std::string>& patterns) {
+  std::vector<std::string> all;
+  for (const auto& one : store.cases()) all.push_back(one.inputs.name);
+  for (const auto& pattern : patterns) {
+    if (store.find(pattern).empty())
+      throw InputError({.what = "no case matches '" + pattern + "'",
+                        .where = store.path().string(),
+                        .advice = base::name_advice(pattern, all) + "; nothing was removed"});
+  }
+  std::vector<std::string> names;
+  for (const auto& name : all) {
+    const auto is_meant = [&](const std::string& pattern) { return base::matches(name, pattern); };
+    if (std::any_of(patterns.begin(), patterns.end(), is_meant)) names.push_back(name);
+  }
+  return names;
+}
+
+int remove(const Options& options) {
+  const auto store = field::SnapshotStore::open(options.store);
+  const auto names = matching(store, options.patterns);
+  const auto n_left = store.n_cases() - names.size();
+  if (n_left == 0)
+    throw InputError({.what = "no case would be left",
+                      .where = options.store.string(),
+                      .advice = "remove the file itself; nothing was removed"});
+  field::remove_cases(options.store, {names.begin(), names.end()});
+  fmt::print("removed: {}\n{} case{} left in {}\n", base::join(names, ", "), n_left,
+             n_left == 1 ? " is" : "s are", options.store.string());
+  fmt::print(
+      "A study learns without them from its next 'elrom-train retrain' on; a watched folder brings back what "
+      "still lies there.\n");
+  return 0;
+}
+
+}  // namespace
+
+void add_remove(CLI::App& program, Work& chosen) {
+  auto* command = program.add_subcommand(
+      "remove",
+      R"(Take cases out of a snapshot store. The store is replaced whole at the end, or stays as it was. To keep a case and
+not learn from it, name it in study.toml instead ([train] exclude).)");
+  auto options = std::make_shared<Options>();
+  command->add_option("--store", options->store, "Snapshot store")->type_name("STORE.h5")->required();
+  command
+      ->add_option("NAME", options->patterns,
+                   "Names of cases, or patterns ('train_0*'); each must match a case")
+      ->required()
+      ->type_name("NAME|PATTERN...");
+  command->callback([options, &chosen] { chosen = [options] { return remove(*options); }; });
+}
+
+}  // namespace elrom::programs

@@ -1,0 +1,208 @@
+// bench-door: what the checks at import find of planted faults, and whether they object to sound cases. Every
+// fault is planted into a case as exported; the case then comes to the reduced mesh and is judged among all the
+// others, as import judges it, and alone, as the first case of a new store.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "elrom/ingest/check.hpp"
+#include "elrom/ingest/onto_mesh.hpp"
+#include "support/benchmark.hpp"
+#include "support/planted_faults.hpp"
+
+namespace elrom::benchmark {
+namespace {
+
+struct Options {
+  bool small = false;
+  int faults = 40, threads = base::available_threads();
+  std::filesystem::path json, mesh = ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.h5";
+  std::vector<std::string> folders;
+};
+
+struct Tally {
+  int passed = 0, of = 0, alone = 0;
+  std::map<std::string, int> by;  //!< kinds of findings
+  std::vector<std::string> missed;
+};
+
+class Door {
+ public:
+  explicit Door(const Options& options)
+      : options_(options),
+        mesh_(field::read_mesh(options.mesh)),
+        furnace_(field::read_furnace(std::filesystem::path(options.mesh).replace_extension(".toml"))) {
+    for (const auto& folder : options.folders) {
+      for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".h5") files_.push_back(entry.path());
+    }
+    std::sort(files_.begin(), files_.end(),
+              [](const auto& a, const auto& b) { return a.filename() < b.filename(); });
+    if (options.small) thin(16);
+    if (files_.size() < 2) throw InputError({.what = "no cases", .where = options.folders.front()});
+    fields_ = furnace_.limited({field::standard_fields().begin(), field::standard_fields().end()});
+  }
+
+  nlohmann::ordered_json run() {
+    const Stopwatch watch;
+    read_all();
+    nlohmann::ordered_json json{{"cases", files_.size()}};
+    const auto alarms = false_alarms();
+    for (const auto& alarm : alarms) fmt::print("false alarm: {}\n", alarm);
+    json["false_alarms"] = alarms.size();
+    json["stores_without_alarm"] = n_stores_;
+    json["kinds"] = nlohmann::ordered_json::object();
+    for (const auto& fault : test::planted_faults()) json["kinds"][fault.kind] = report(fault, plant(fault));
+    json["seconds"] = watch.seconds();
+    return json;
+  }
+
+ private:
+  void thin(std::size_t n) {
+    std::vector<std::filesystem::path> some;
+    for (std::size_t i = 0; i < n && files_.size() > 0; ++i) some.push_back(files_[i * files_.size() / n]);
+    files_ = some;
+  }
+
+  void add(ingest::Checker& checker, ingest::OntoMesh& onto_mesh, const ingest::CfdCase& one) const {
+    const auto snapshot = onto_mesh.bring(one, schema_, fields_);
+    checker.add(ingest::view_of(snapshot.record, snapshot.fields, mesh_, schema_, fields_, &furnace_,
+                                onto_mesh.coverage()));
+  }
+
+  void read_all() {
+    for (int t = 0; t < options_.threads; ++t)
+      onto_mesh_.push_back(std::make_unique<ingest::OntoMesh>(mesh_, 1));
+    for (const auto& file : files_) {
+      const auto one = ingest::read_el3d(file);
+      if (schema_.size() == 0) schema_ = one.schema;
+      add(all_, *onto_mesh_[0], one);
+    }
+  }
+
+  static std::vector<ingest::Finding> serious(const ingest::Checker& checker) {
+    auto findings = checker.findings();
+    std::erase_if(findings, [](const auto& f) { return f.severity == ingest::Severity::note; });
+    return findings;
+  }
+
+  /// All cases in one store, and stores that grow in several orders.
+  std::vector<std::string> false_alarms() {
+    std::vector<std::string> alarms;
+    const auto judge = [&](const ingest::Checker& checker) {
+      ++n_stores_;
+      for (const auto& finding : serious(checker))
+        alarms.push_back(fmt::format("among {}: {}", checker.cases().size(), ingest::line_of(finding)));
+    };
+    judge(all_);
+    const int n_orders = options_.small ? 2 : 10;
+    for (int order = 0; order < n_orders; ++order) {
+      std::vector<std::string> names;
+      for (const auto& one : all_.cases()) names.push_back(one.name);
+      base::Random(base::Seed(2).derive("order").derive(static_cast<std::uint64_t>(order))).shuffle(names);
+      for (std::size_t n = 1; n < names.size(); n += 1 + n / 2) {
+        auto some = all_;
+        some.forget({names.begin() + static_cast<std::ptrdiff_t>(n), names.end()});
+        judge(some);
+      }
+    }
+    return alarms;
+  }
+
+  Tally plant(const test::PlantedFault& fault) const {
+    const auto n = std::min<std::size_t>(files_.size(), static_cast<std::size_t>(options_.faults));
+    Tally tally;
+    std::mutex guard;
+    std::vector<ingest::CfdCase> cases;
+    for (std::size_t k = 0; k < n; ++k) cases.push_back(ingest::read_el3d(files_[k * files_.size() / n]));
+    base::parallel_for(n, options_.threads, [&](std::size_t k, int thread) {
+      auto& one = cases[k];
+      fault.plant(one, k);
+      const auto [found, found_alone] = judge(one, *onto_mesh_[static_cast<std::size_t>(thread)]);
+      const std::lock_guard lock(guard);
+      ++tally.of;
+      tally.alone += found_alone.empty() ? 0 : 1;
+      for (const auto& kind : found) ++tally.by[kind];
+      if (found.empty())
+        tally.missed.push_back(fmt::format("{} variant {}", one.record.inputs.name, k));
+      else
+        ++tally.passed;
+      one = {};
+    });
+    return tally;
+  }
+
+  /// Kinds of findings on the case among the others, and alone.
+  [[nodiscard]] std::pair<std::set<std::string>, std::set<std::string>> judge(
+      const ingest::CfdCase& one, ingest::OntoMesh& onto_mesh) const {
+    const auto& name = one.record.inputs.name;
+    auto others = all_;
+    others.forget({name});
+    ingest::Checker alone;
+    try {
+      add(others, onto_mesh, one);
+      add(alone, onto_mesh, one);
+    } catch (const InputError&) {
+      return {{"refused"}, {"refused"}};
+    }
+    const auto kinds = [&](const ingest::Checker& checker) {
+      std::set<std::string> result;
+      for (const auto& finding : ingest::findings_on(checker.findings(), name)) result.insert(finding.kind);
+      return result;
+    };
+    return {kinds(others), kinds(alone)};
+  }
+
+  static nlohmann::ordered_json report(const test::PlantedFault& fault, const Tally& tally) {
+    fmt::print("{:<20}{:>4} of {} found, {} of a store's first case\n", fault.kind, tally.passed, tally.of,
+               tally.alone);
+    for (const auto& miss : tally.missed) fmt::print("  missed: {}\n", miss);
+    return {{"passed", tally.passed}, {"of", tally.of}, {"first_case", tally.alone}, {"by", tally.by}};
+  }
+
+  const Options& options_;
+  field::Mesh mesh_;
+  field::Furnace furnace_;
+  field::InputSchema schema_;
+  std::vector<field::FieldInfo> fields_;
+  std::vector<std::filesystem::path> files_;
+  ingest::Checker all_;
+  std::vector<std::unique_ptr<ingest::OntoMesh>> onto_mesh_;  //!< one a thread
+  int n_stores_ = 0;
+};
+
+int run(int argc, char** argv) {
+  Options options;
+  CommandLine line(
+      "What the checks at import find of planted faults, and whether they object to sound cases.");
+  line.add("--json", options.json, "write the figures to this file");
+  line.add("--small", options.small, "a version that ends within a minute");
+  line.add("--threads", options.threads, "threads");
+  line.add("--faults", options.faults, "of each kind, at most one a case");
+  line.add("--mesh", options.mesh, "reduced mesh, with its furnace description beside it");
+  line.add_repeated("--cases", options.folders, "folder of EL3D exports; may be repeated [data/cases]");
+  if (const auto status = line.parse(argc, argv)) return *status;
+  if (options.folders.empty()) options.folders = {ELROM_SOURCE_DIR "/data/cases"};
+  if (options.small) options.faults = std::min(options.faults, 3);
+  auto json = Door(options).run();
+  json["program"] = program_version();
+  json["small"] = options.small;
+  const auto text = json.dump(1) + "\n";
+  std::fputs(text.c_str(), stdout);
+  if (!options.json.empty()) base::write_text(options.json, text);
+  return 0;
+}
+
+}  // namespace
+}  // namespace elrom::benchmark
+
+int main(int argc, char** argv) {
+  return elrom::base::run_app("bench-door", [&] { return elrom::benchmark::run(argc, argv); });
+}
