@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "case_list.hpp"
 #include "elrom/fields/arguments.hpp"
 #include "elrom/fields/physics.hpp"
 #include "elrom/fields/text_writer.hpp"
@@ -15,7 +16,7 @@ namespace elrom::fields {
 
 /// Thread rule: const use from any number of threads.
 struct Opened {
-  std::vector<field::CaseInputs> cases;
+  CaseList list;
   std::optional<Physics> physics;          ///< only with --audit or --conserve
   std::optional<Coordinates> coordinates;  ///< only with text formats
   model::Predictor predictor;
