@@ -5,9 +5,9 @@
 // Every logarithmic feature is regressed robustly (Theil 1950, Sen 1968) on the load, which is itself a
 // median over the gas flows. A value is suspected when it lies far outside the scatter of the other cases and
 // a change of unit would put it, and everything that depends on it, back among them. What no unit explains is
-// told when an input lies far from what the other inputs make usual (model::OperatingLine, as the guard
-// judges it), or a measure of the fields far from the other cases'. With too few cases for that, or when all
-// of them share the mistake, the ratios that physics fixes still tell.
+// told when an input lies far from what the other inputs make usual (model::OperatingLine, as in the guard),
+// or a measure of the fields far from the other cases'. With too few cases for that, or when all of them
+// share the mistake, the ratios that physics fixes still tell.
 
 #include <span>
 #include <string>

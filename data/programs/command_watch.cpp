@@ -22,8 +22,6 @@
 namespace elrom::programs {
 namespace {
 
-constexpr int nothing_new = 8;  // exit status
-
 struct Options {
   ingest::WatchOptions watch;
   JudgementOptions judgement;
@@ -161,7 +159,7 @@ class Watch {
     if (n_refused_ > 0) return static_cast<int>(ExitStatus::input);
     fmt::print("nothing new in {}{}\n", options_.watch.folder.string(),
                n_unfinished_ > 0 ? fmt::format("; {} still being written", n_unfinished_) : "");
-    return nothing_new;
+    return static_cast<int>(ExitStatus::nothing_new);
   }
 
   const Options& options_;

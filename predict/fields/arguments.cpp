@@ -16,16 +16,27 @@ Predicts the fields of a furnace from its boundary conditions, with a bundle tha
 
   elrom-predict --bundle model.elrom --cases cases.csv --output results
   elrom-predict --bundle model.elrom --cases cases.csv --case load_064 --set 'primary_air=180 kg/s' --output results
+  elrom-predict --bundle model.elrom --cases cases.csv --case load_064 --sweep primary_air=150:200:5 --output results
   elrom-predict --bundle model.elrom --cases cases.csv --case load_064 --fields pressure --format csv --output -
 )";
 
 constexpr const char* footer = R"(
 Cases: a CSV table with the columns case, load (may be missing) and 'name [unit]' for every input, in any order; or
-JSON or TOML with the same names. Units are converted. --set changes an input of every case chosen; without --cases it
-must give all of them.
+JSON or TOML with the same names; - reads a CSV table from standard input. Units are converted; without one a number is
+in the unit that the bundle was trained with. Spreadsheets' semicolons and decimal commas are understood. --set changes an
+input of every case chosen, and the changed case gets a name of its own (load_064+primary_air=180, or --name); without
+--cases it must give all inputs. --sweep predicts every case chosen as it is, and once for every value of an input;
+several --sweep: one input at a time, with --grid every combination.
 
-Validity: every case is judged inside, edge or outside of what the bundle was trained on; the verdict and its reason
-are printed and kept in the output. Inputs beyond one trained width outside the range are held there. With --strict a
+Summary: when sweeping, or with --summary FILE.csv, a table with a line a case: verdict and reason, solids [kg], gas balance and
+pressure drop as far as fields and furnace tell, mean, lowest and highest value of each field, and the change of each
+against the case that it was made from. --page FILE.html draws it as curves over the swept inputs.
+
+Validity: every case is judged inside, edge or outside of what the bundle was trained on, input by input (against the
+trained range, and against what its other inputs make usual) and as a whole; the verdict and its reason are printed and
+kept in the output (100 cases or more: counts are printed, lines with --verbose). Impossible inputs are refused: mass flows
+and masses below 0, fractions outside 0 to 1, sizes, densities and absolute temperatures that are not above 0, and
+whatever lies beyond every furnace. Inputs beyond one trained width outside the range are held there. With --strict a
 case that is outside is not written, the other cases are, and the exit status is 4.
 
 Physics: --audit compares what is written with the boundary conditions: solids in the fields against the inventory, gas
@@ -68,12 +79,15 @@ struct Texts {
 
 void add_input_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--bundle", arguments.bundle, "bundle to predict with")->required();
-  app.add_option("--cases", arguments.cases, "table of cases: .csv, .json or .toml");
+  app.add_option("--cases", arguments.cases, "table of cases: .csv, .json or .toml, or - for standard input");
   base::comma_list(app.add_option("--case", arguments.case_patterns,
                                   "only the cases of these names ('load_*' works), default: all"));
   base::repeatable(app.add_option("--set", arguments.settings,
                                   "name=value or 'name=value unit': an input's value; may be repeated"));
-  app.add_option("--name", arguments.name, "name of the case that --set alone makes")->capture_default_str();
+  app.add_option("--name", arguments.name, "name of the case that --set makes");
+  base::repeatable(app.add_option("--sweep", arguments.sweeps,
+                                  "name=start:stop:step or 'name=start:stop:step unit'; may be repeated"));
+  app.add_flag("--grid", arguments.grid, "every combination of the sweeps");
 }
 
 void add_selection_options(CLI::App& app, Arguments& arguments, Texts& texts) {
@@ -101,6 +115,12 @@ void add_output_options(CLI::App& app, Arguments& arguments, Texts& texts) {
                                   base::join(format_names(false), ", ") +
                                       "; several with commas; default: hdf, with --output -: csv"))
       ->type_name("FORMAT");
+  app.add_option("--summary", arguments.summary,
+                 "table with a line a case; default when sweeping: summary.csv in the folder")
+      ->type_name("FILE.csv");
+  app.add_option("--page", arguments.page, "curves over the swept inputs, for a browser")
+      ->type_name("FILE.html");
+  app.add_flag("--verbose", arguments.verbose, "a line for every case, however many there are");
   app.add_flag("--strict", arguments.strict,
                "do not write cases that are outside the trained range; exit status 4");
 }
@@ -128,7 +148,18 @@ void check_output(const Arguments& arguments) {
   const bool there = std::filesystem::exists(arguments.output, unreadable);
   if (there && !std::filesystem::is_directory(arguments.output, unreadable) &&
       !arguments.to_standard_output())
-    throw UsageError({.what = "--output " + arguments.output + " is a file", .expected = "a folder"});
+    throw UsageError({.what = "--output is a file, not a folder",
+                      .found = "'" + arguments.output + "'",
+                      .advice = "name a folder; one case of a text format into a file: --output - > FILE"});
+}
+
+void check_what_if(Arguments& arguments) {
+  if (arguments.grid && arguments.sweeps.empty()) throw UsageError("--grid needs --sweep");
+  if (!arguments.page.empty() && arguments.sweeps.empty())
+    throw UsageError("--page draws curves over what is swept; add --sweep");
+  const bool beside_output = !arguments.sweeps.empty() && !arguments.to_standard_output();
+  if (arguments.summary.empty() && beside_output)
+    arguments.summary = std::filesystem::path(arguments.output) / "summary.csv";
 }
 
 void check_together(Arguments& arguments) {
@@ -139,6 +170,7 @@ void check_together(Arguments& arguments) {
     if (std::find(once.begin(), once.end(), format) == once.end()) once.push_back(format);
   }
   arguments.formats = std::move(once);
+  check_what_if(arguments);
   if (arguments.cases.empty() && arguments.settings.empty()) {
     throw UsageError("nothing to predict; give --cases FILE, or every input by --set name=value");
   }

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "possible_inputs.hpp"
+#include "user_unit.hpp"
 
 namespace elrom::fields {
 namespace {
@@ -33,42 +36,182 @@ void check_complete(const field::CaseInputs& inputs, const field::InputSchema& s
     if (std::isnan(inputs.values[i])) missing.push_back(schema[i].name);
   }
   if (missing.empty()) return;
-  constexpr std::size_t most = 5;
-  const std::size_t n_missing = missing.size();
-  missing.resize(std::min(most, n_missing));
-  throw UsageError({.what = std::to_string(n_missing) + " inputs are not given: " +
-                            base::join(missing, ", ") + (n_missing > most ? ", ..." : ""),
+  throw UsageError({.what = std::to_string(missing.size()) +
+                            (missing.size() == 1 ? " input is" : " inputs are") +
+                            " not given: " + base::join(missing, ", "),
                     .advice = "set them all, or start from a case by --cases FILE --case NAME"});
 }
 
+/// A name that the files of the case can have.
 void check_name(const std::string& name) {
-  if (!name.empty() && name.front() != '.' && name.find_first_of("/\\") == std::string::npos) return;
-  throw InputError({.what = "case name cannot be a file's name",
-                    .found = "'" + name + "'",
-                    .expected = "a name without slashes that does not begin with a dot"});
+  constexpr std::size_t longest = 200;
+  const bool plain = !name.empty() && name.front() != '.' && name.find_first_of("/\\") == std::string::npos;
+  if (plain && name.size() <= longest) return;
+  throw InputError(
+      {.what = "case name cannot be a file's name",
+       .found = "'" + name.substr(0, longest) + "'",
+       .expected = "at most " + std::to_string(longest) + " characters, no slashes, no dot at the beginning",
+       .advice = "--name gives another"});
+}
+
+/// "+primary_air=180": the value in the user's unit.
+std::string change_text(const field::InputInfo& info, double si) {
+  constexpr int digits = 6;
+  const auto& unit = user_unit(info);
+  return "+" + info.name + "=" + base::rounded(unit.from_si(si), digits);
+}
+
+/// The input that a setting or a sweep names: its text up to '='.
+std::string_view name_in(std::string_view setting) { return setting.substr(0, setting.find('=')); }
+
+void apply_settings(std::vector<field::CaseInputs>& cases, const Arguments& arguments,
+                    const field::InputSchema& schema) {
+  if (arguments.settings.empty()) return;
+  for (auto& item : cases) {
+    std::string suffix;
+    std::vector<std::size_t> changed;
+    for (const auto& setting : arguments.settings) {
+      field::apply_setting(item, setting, schema);
+      const auto i = schema.index_of(base::trim(name_in(setting)));
+      if (std::ranges::find(changed, i) == changed.end()) changed.push_back(i);
+    }
+    for (const auto i : changed) suffix += change_text(schema[i], item.values[i]);
+    const bool from_table = !arguments.cases.empty();
+    if (!arguments.name.empty()) {
+      item.name = cases.size() > 1 ? item.name + "+" + arguments.name : arguments.name;
+    } else if (from_table) {
+      item.name += suffix;
+    }
+  }
+}
+
+struct Sweep {
+  std::size_t input = 0;
+  std::vector<double> values;  //!< SI
+};
+
+[[noreturn]] void refuse_sweep(const std::string& text) {
+  throw UsageError({.what = "--sweep cannot be read",
+                    .found = "'" + text + "'",
+                    .expected = "name=start:stop:step, such as 'primary_air=150:200:5 kg/s'"});
+}
+
+Sweep parse_sweep(const std::string& text, const field::InputSchema& schema) {
+  constexpr double most_values = 10'000;
+  const auto equals = text.find('=');
+  const auto sides = base::split(equals == std::string::npos ? "" : text.substr(equals + 1), ':');
+  if (sides.size() != 3) refuse_sweep(text);
+  const auto start = base::to_double(base::trim(sides[0])), stop = base::to_double(base::trim(sides[1]));
+  const auto step = base::split_quantity(sides[2]);
+  const bool numbers = start && stop && step && std::isfinite(*start) && std::isfinite(*stop);
+  if (!numbers || step->value == 0 || (*stop - *start) / step->value < 0) refuse_sweep(text);
+  const double n_steps = std::floor((*stop - *start) / step->value + 1e-9);
+  if (n_steps >= most_values)
+    throw UsageError(
+        {.what = "--sweep has too many values", .found = "'" + text + "'", .expected = "at most 10000"});
+  field::CaseInputs one{
+      .name = "", .load = not_given, .values = std::vector<double>(schema.size(), not_given)};
+  Sweep sweep{schema.index_of(base::trim(name_in(text))), {}};
+  for (double k = 0; k <= n_steps; ++k) {
+    field::apply_setting(
+        one, std::string(name_in(text)) + "=" + base::number(*start + k * step->value) + " " + step->symbol,
+        schema);
+    sweep.values.push_back(one.values[sweep.input]);
+  }
+  return sweep;
+}
+
+/// Every combination of the sweeps' values, or one input at a time: lists of (input, value).
+std::vector<std::vector<std::pair<std::size_t, double>>> changes_of(const std::vector<Sweep>& sweeps,
+                                                                    bool grid) {
+  std::vector<std::vector<std::pair<std::size_t, double>>> changes;
+  if (!grid) {
+    for (const auto& sweep : sweeps)
+      for (const double value : sweep.values) changes.push_back({{sweep.input, value}});
+    return changes;
+  }
+  constexpr std::size_t most = 1'000'000;
+  changes.emplace_back();
+  for (const auto& sweep : sweeps) {
+    if (changes.size() * sweep.values.size() > most)
+      throw UsageError("--grid has too many combinations; at most a million");
+    std::vector<std::vector<std::pair<std::size_t, double>>> longer;
+    for (const auto& so_far : changes) {
+      for (const double value : sweep.values) {
+        longer.push_back(so_far);
+        longer.back().emplace_back(sweep.input, value);
+      }
+    }
+    changes = std::move(longer);
+  }
+  return changes;
+}
+
+/// Each base, and after it all that the sweeps make of it.
+CaseList sweep_all(std::vector<field::CaseInputs> bases, const Arguments& arguments,
+                   const field::InputSchema& schema) {
+  CaseList list;
+  std::vector<Sweep> sweeps;
+  for (const auto& text : arguments.sweeps) {
+    sweeps.push_back(parse_sweep(text, schema));
+    if (std::ranges::find(list.swept, sweeps.back().input) != list.swept.end())
+      throw UsageError("'" + schema[sweeps.back().input].name + "' is swept twice");
+    list.swept.push_back(sweeps.back().input);
+  }
+  const auto changes =
+      sweeps.empty() ? decltype(changes_of(sweeps, false)){} : changes_of(sweeps, arguments.grid);
+  for (auto& base : bases) {
+    const auto i_base = list.cases.size();
+    list.cases.push_back(std::move(base));
+    list.origins.push_back({i_base, {}});
+    for (const auto& change : changes) {
+      auto variant = list.cases[i_base];
+      CaseList::Origin origin{i_base, {}};
+      for (const auto& [input, value] : change) {
+        variant.values[input] = value;
+        variant.name += change_text(schema[input], value);
+        origin.changed.push_back(input);
+      }
+      list.cases.push_back(std::move(variant));
+      list.origins.push_back(std::move(origin));
+    }
+  }
+  return list;
+}
+
+std::vector<field::CaseInputs> chosen_cases(const Arguments& arguments, const field::InputSchema& schema) {
+  if (arguments.cases.empty())
+    return {{arguments.name.empty() ? "case" : arguments.name, not_given,
+             std::vector<double>(schema.size(), not_given)}};
+  auto cases = field::read_cases(arguments.cases == "-" ? "/dev/stdin" : arguments.cases, schema);
+  if (!arguments.case_patterns.empty()) keep_matching(cases, arguments.case_patterns);
+  return cases;
 }
 
 }  // namespace
 
-std::vector<field::CaseInputs> case_list(const Arguments& arguments, const field::InputSchema& schema) {
-  std::vector<field::CaseInputs> cases;
-  if (arguments.cases.empty()) {
-    cases.push_back({arguments.name, not_given, std::vector<double>(schema.size(), not_given)});
-  } else {
-    cases = field::read_cases(arguments.cases, schema);
-  }
-  if (!arguments.case_patterns.empty()) keep_matching(cases, arguments.case_patterns);
-  for (auto& item : cases) {
-    for (const auto& setting : arguments.settings) field::apply_setting(item, setting, schema);
-    check_complete(item, schema);
+CaseList case_list(const Arguments& arguments, const field::InputSchema& schema) {
+  auto bases = chosen_cases(arguments, schema);
+  apply_settings(bases, arguments, schema);
+  for (const auto& item : bases) check_complete(item, schema);
+  auto list = sweep_all(std::move(bases), arguments, schema);
+  std::set<std::string_view> names;
+  for (const auto& item : list.cases) {
     check_name(item.name);
+    check_possible(item, schema);
+    if (!names.insert(item.name).second)
+      throw UsageError({.what = "two cases of one name",
+                        .found = "'" + item.name + "'",
+                        .advice = "a coarser --sweep, or another --name"});
   }
-  if (arguments.to_standard_output() && cases.size() != 1) {
-    throw UsageError({.what = "--output - takes one case",
-                      .found = std::to_string(cases.size()) + " cases",
-                      .advice = "choose one by --case NAME"});
+  const bool only_csv = arguments.formats == std::vector{Format::csv};
+  if (arguments.to_standard_output() && list.cases.size() != 1 && !only_csv) {
+    throw UsageError(
+        {.what = std::string("--output - takes one case as ") + info_of(arguments.formats[0]).name,
+         .found = std::to_string(list.cases.size()) + " cases",
+         .advice = "choose one by --case NAME, or --format csv"});
   }
-  return cases;
+  return list;
 }
 
 }  // namespace elrom::fields

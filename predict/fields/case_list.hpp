@@ -1,6 +1,9 @@
 #pragma once
-// The cases to predict: a table, some of its rows, changed by settings; or one case made of settings alone.
+// The cases to predict: a table, some of its rows, changed by settings and sweeps; or one case made of
+// settings alone. Impossible inputs are refused here.
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "elrom/field/boundary_conditions.hpp"
@@ -8,8 +11,19 @@
 
 namespace elrom::fields {
 
-/// @throws UsageError (no such case, an input not given), InputError (the table)
-[[nodiscard]] std::vector<field::CaseInputs> case_list(const Arguments& arguments,
-                                                       const field::InputSchema& schema);
+struct CaseList {
+  /// Where a case comes from.
+  struct Origin {
+    std::size_t base = 0;              ///< the case it was made from; its own number: none
+    std::vector<std::size_t> changed;  ///< inputs that a sweep gave it
+  };
+  std::vector<field::CaseInputs> cases;
+  std::vector<Origin> origins;     //!< (cases)
+  std::vector<std::size_t> swept;  //!< inputs, in the order of the sweeps
+};
+
+/// @throws UsageError (no such case, an input not given, a sweep that is none), InputError (the table, an
+/// impossible input)
+[[nodiscard]] CaseList case_list(const Arguments& arguments, const field::InputSchema& schema);
 
 }  // namespace elrom::fields

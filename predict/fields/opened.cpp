@@ -1,7 +1,9 @@
 #include "opened.hpp"
 
-#include "case_list.hpp"
+#include <fstream>
+
 #include "elrom/base/error.hpp"
+#include "elrom/io/hdf5.hpp"
 #include "targets.hpp"
 
 namespace elrom::fields {
@@ -40,12 +42,41 @@ void expect_free_folders(const Arguments& arguments, const std::vector<field::Ca
   }
 }
 
+/// What an HDF5 file that was given for a bundle is; empty for another kind of file.
+std::string hdf5_kind(const std::filesystem::path& path) {
+  constexpr std::string_view signature = "\x89HDF";
+  std::string begin(signature.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (begin != signature) return "";
+  const auto file = io::Hdf5File::open(path);
+  const auto kind = file.has_attribute("kind") ? file.text("kind") : "";
+  return kind == io::kinds::snapshots.name    ? "a store of cases"
+         : kind == io::kinds::mesh.name       ? "a mesh"
+         : kind == io::kinds::prediction.name ? "a prediction"
+                                              : "an HDF5 file";
+}
+
+model::BundleReader open_bundle(const Arguments& arguments) {
+  try {
+    return model::BundleReader(arguments.bundle, arguments.verify ? io::Verify::on_use : io::Verify::never);
+  } catch (const InputError&) {
+    const auto kind = hdf5_kind(arguments.bundle);
+    if (kind.empty()) throw;
+    const bool store = kind == "a store of cases";
+    throw InputError(
+        {.what = "--bundle is " + kind + ", not a bundle",
+         .where = arguments.bundle.string(),
+         .advice = store ? "train one from it with elrom-train run STUDY --store " + arguments.bundle.string()
+                         : "give the model.elrom that elrom-train wrote"});
+  }
+}
+
 }  // namespace
 
 Opened open(const Arguments& arguments, int n_threads, Timing& timing) {
   Stopwatch lap;
-  model::BundleReader bundle(arguments.bundle, arguments.verify ? io::Verify::on_use : io::Verify::never);
-  auto cases = case_list(arguments, bundle.info().schema);
+  auto bundle = open_bundle(arguments);
+  auto list = case_list(arguments, bundle.info().schema);
   model::Extent extent(
       bundle, {.planes = arguments.planes, .box = arguments.region, .profile = arguments.profile}, n_threads);
   std::optional<Coordinates> coordinates;
@@ -53,7 +84,7 @@ Opened open(const Arguments& arguments, int n_threads, Timing& timing) {
   if (coordinates) coordinates->names = names_of(arguments, bundle);
   std::unique_ptr<const Onto> onto;
   if (!arguments.onto.mesh.empty()) onto = std::make_unique<Onto>(arguments, bundle, n_threads);
-  if (arguments.writes(Format::openfoam)) expect_free_folders(arguments, cases);
+  if (arguments.writes(Format::openfoam)) expect_free_folders(arguments, list.cases);
   std::optional<Physics> physics;
   if (arguments.audit || arguments.conserve) physics.emplace(arguments, bundle, extent.cells());
   timing.open = lap.lap();
@@ -61,14 +92,14 @@ Opened open(const Arguments& arguments, int n_threads, Timing& timing) {
                              .planes = extent.cells().planes(),
                              .best_build_only = arguments.best_build_only,
                              .interval_level = arguments.level,
-                             .load_on_use = cases.size() == 1 && !arguments.timing,
+                             .load_on_use = list.cases.size() == 1 && !arguments.timing,
                              .n_threads = n_threads};
   model::Predictor predictor(std::move(bundle), std::move(selection));
   timing.read = lap.lap();
   model::PredictionFrame frame(predictor, std::move(extent));
   timing.prepare = lap.lap();
-  return {std::move(cases), std::move(physics),   std::move(coordinates),
-          std::move(onto),  std::move(predictor), std::move(frame)};
+  return {std::move(list), std::move(physics),   std::move(coordinates),
+          std::move(onto), std::move(predictor), std::move(frame)};
 }
 
 }  // namespace elrom::fields

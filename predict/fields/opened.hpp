@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "case_list.hpp"
 #include "elrom/fields/arguments.hpp"
 #include "elrom/fields/physics.hpp"
 #include "elrom/fields/text_writer.hpp"
@@ -17,7 +18,7 @@ namespace elrom::fields {
 
 /// Thread rule: const use from any number of threads.
 struct Opened {
-  std::vector<field::CaseInputs> cases;
+  CaseList list;
   std::optional<Physics> physics;          ///< only with --audit or --conserve
   std::optional<Coordinates> coordinates;  ///< only with text formats
   std::unique_ptr<const Onto> onto;        ///< only with --onto

@@ -14,10 +14,12 @@ class ReportLines {
  public:
   ReportLines(std::size_t n, std::FILE* stream) : lines_(n), stream_(stream) {}
 
+  /// An empty line is not printed.
   void add(std::size_t i, std::string line) {
     const std::scoped_lock lock(mutex_);
     lines_[i] = std::move(line);
     for (; next_ < lines_.size() && lines_[next_]; ++next_) {
+      if (lines_[next_]->empty()) continue;
       std::fputs(lines_[next_]->c_str(), stream_);
       std::fputc('\n', stream_);
       lines_[next_]->clear();

@@ -2,17 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cstdio>
 #include <mutex>
+#include <optional>
 
 #include "elrom/base/app.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/large_array.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/io/csv.hpp"
 #include "hdf_file.hpp"
+#include "key_figures.hpp"
 #include "opened.hpp"
 #include "report_lines.hpp"
+#include "summary.hpp"
 #include "targets.hpp"
 
 namespace elrom::fields {
@@ -21,6 +25,8 @@ namespace {
 /// From this many cases on Ctrl-C is watched for; below, ending the process at once is clean enough (files
 /// appear whole).
 constexpr std::size_t long_table = 16;
+/// From this many cases on verdicts are counted, not listed.
+constexpr std::size_t counted_table = 100;
 
 /// What one thread needs for one case at a time; reused, so that a long table runs in flat memory.
 struct Desk {
@@ -40,10 +46,20 @@ class CaseRunner {
       : arguments_(arguments),
         opened_(opened),
         targets_(arguments),
-        lines_(opened.cases.size(), arguments.to_standard_output() ? stderr : stdout) {}
+        lines_(n_cases(), arguments.to_standard_output() ? stderr : stdout),
+        text_(n_cases(), stdout),
+        results_(n_cases()) {
+    if (!arguments.summary.empty() || !arguments.page.empty())
+      figures_.emplace(opened.predictor, opened.frame.extent);
+  }
 
   void predict(std::size_t i, Desk& desk, int n_threads);
-  [[nodiscard]] std::size_t n_outside() const { return n_outside_; }
+  /// Summary, page and counts, after the last case.
+  void finish() const;
+  [[nodiscard]] std::size_t n_cases() const { return opened_.list.cases.size(); }
+  [[nodiscard]] std::size_t n_with(model::Verdict verdict) const {
+    return static_cast<std::size_t>(std::ranges::count(results_, verdict, &CaseResult::verdict));
+  }
 
  private:
   /// Predicts the case into the desk, and begins its file meanwhile where threads are left for that.
@@ -51,17 +67,39 @@ class CaseRunner {
   model::Prediction compute(const field::CaseInputs& inputs, const model::Assessment& assessment,
                             HdfFile& hdf, Desk& desk, int n_threads) const;
   /// @return what is to be said of it, on lines of its own
-  std::string write(Format format, const model::Prediction& prediction, HdfFile& hdf, Desk& desk) const;
-  void write_text(Format format, const Coordinates& coordinates, const model::Prediction& prediction,
-                  Desk& desk) const;
+  std::string write(std::size_t i, Format format, const model::Prediction& prediction, HdfFile& hdf,
+                    Desk& desk);
+  void write_text(std::size_t i, Format format, const Coordinates& coordinates,
+                  const model::Prediction& prediction, Desk& desk);
+  [[nodiscard]] bool is_left_out(const model::Assessment& assessment) const {
+    return arguments_.strict && assessment.verdict == model::Verdict::outside;
+  }
+  [[nodiscard]] bool counts_only() const { return n_cases() >= counted_table && !arguments_.verbose; }
 
   const Arguments& arguments_;
   const Opened& opened_;
   const Targets targets_;
   ReportLines lines_;
+  ReportLines text_;  //!< of several cases on standard output
+  std::vector<CaseResult> results_;
+  std::optional<KeyFigures> figures_;
+  std::once_flag heading_;
   std::mutex hdf5_;  //!< the library is not thread-safe
-  std::atomic<std::size_t> n_outside_{0};
 };
+
+/// Rows of a CSV text without its headings, each with the case's name before it.
+std::string rows_of_case(std::string_view csv, const std::string& name) {
+  std::string rows;
+  const auto begin = name + ",";
+  csv.remove_prefix(csv.find('\n') + 1);
+  while (!csv.empty()) {
+    const auto end = csv.find('\n') + 1;
+    rows.append(begin).append(csv.substr(0, end));
+    csv.remove_prefix(end);
+  }
+  if (!rows.empty()) rows.pop_back();  // a line break follows
+  return rows;
+}
 
 model::Prediction CaseRunner::compute(const field::CaseInputs& inputs, const model::Assessment& assessment,
                                       HdfFile& hdf, Desk& desk, int n_threads) const {
@@ -91,8 +129,8 @@ model::Prediction CaseRunner::compute(const field::CaseInputs& inputs, const mod
   return prediction;
 }
 
-std::string CaseRunner::write(Format format, const model::Prediction& prediction, HdfFile& hdf,
-                              Desk& desk) const {
+std::string CaseRunner::write(std::size_t i, Format format, const model::Prediction& prediction, HdfFile& hdf,
+                              Desk& desk) {
   if (format == Format::openfoam)
     return opened_.onto->write_time_folder(opened_.frame, prediction,
                                            targets_.path(format, *prediction.inputs));
@@ -102,19 +140,23 @@ std::string CaseRunner::write(Format format, const model::Prediction& prediction
     auto placed = opened_.onto->place(opened_.frame, prediction);
     auto there = prediction;
     there.values = placed.values;
-    write_text(format, opened_.onto->coordinates(), there, desk);
+    write_text(i, format, opened_.onto->coordinates(), there, desk);
     return std::move(placed.text);
   } else {
-    write_text(format, *opened_.coordinates, prediction, desk);
+    write_text(i, format, *opened_.coordinates, prediction, desk);
   }
   return {};
 }
 
-void CaseRunner::write_text(Format format, const Coordinates& coordinates,
-                            const model::Prediction& prediction, Desk& desk) const {
+void CaseRunner::write_text(std::size_t i, Format format, const Coordinates& coordinates,
+                            const model::Prediction& prediction, Desk& desk) {
   desk.text.clear();
   info_of(format).write(opened_.frame, coordinates, prediction, desk.text);
-  if (arguments_.to_standard_output()) {
+  if (arguments_.to_standard_output() && n_cases() > 1) {
+    std::call_once(
+        heading_, [&] { write_to_standard_output("case," + desk.text.substr(0, desk.text.find('\n') + 1)); });
+    text_.add(i, rows_of_case(desk.text, io::csv_cell(prediction.inputs->name)));
+  } else if (arguments_.to_standard_output()) {
     write_to_standard_output(desk.text);
   } else {
     targets_.write(format, *prediction.inputs, desk.text);
@@ -123,14 +165,15 @@ void CaseRunner::write_text(Format format, const Coordinates& coordinates,
 
 void CaseRunner::predict(std::size_t i, Desk& desk, int n_threads) {
   Stopwatch lap;
-  const auto& inputs = opened_.cases[i];
+  const auto& inputs = opened_.list.cases[i];
   const auto assessment = opened_.predictor.guard().assess(inputs.values);
+  auto& result = results_[i];
+  result = {assessment.verdict, assessment.reason, assessment.distance, {}};
   std::string line =
       fmt::format("{}: {}, {}", inputs.name, model::name_of(assessment.verdict), assessment.reason);
-  const bool outside = assessment.verdict == model::Verdict::outside;
-  if (outside) ++n_outside_;
-  if (outside && arguments_.strict) {
-    lines_.add(i, line + "; not written (--strict)");
+  if (is_left_out(assessment)) {
+    text_.add(i, "");
+    lines_.add(i, counts_only() ? "" : line + "; not written (--strict)");
     return;
   }
   HdfFile hdf(hdf5_, [&] {
@@ -139,15 +182,40 @@ void CaseRunner::predict(std::size_t i, Desk& desk, int n_threads) {
     return HdfFile::Begun{std::move(file), model::PredictionWriter(opened_.frame, inputs, assessment, path)};
   });
   const auto prediction = compute(inputs, assessment, hdf, desk, n_threads);
+  if (figures_) result.figures = figures_->of(inputs, desk.values);
   desk.compute += lap.lap();
   std::string said;
   for (const auto format : arguments_.formats) {
-    said += write(format, prediction, hdf, desk);
+    said += write(i, format, prediction, hdf, desk);
     if (!arguments_.to_standard_output()) line += " -> " + targets_.path(format, inputs).string();
   }
   desk.write += lap.lap();
   line += said + desk.physics.text();
-  lines_.add(i, std::move(line));
+  lines_.add(i, counts_only() ? "" : std::move(line));
+}
+
+void CaseRunner::finish() const {
+  std::FILE* stream = arguments_.to_standard_output() ? stderr : stdout;
+  if (counts_only()) {
+    fmt::print(stream, "{} cases: {} inside, {} edge, {} outside{}{} (--verbose: a line for each)\n",
+               n_cases(), n_with(model::Verdict::inside), n_with(model::Verdict::edge),
+               n_with(model::Verdict::outside), arguments_.to_standard_output() ? "" : " -> ",
+               arguments_.to_standard_output() ? "" : arguments_.output);
+  }
+  if (!figures_) return;
+  const Summary summary{opened_.predictor.bundle().info().schema, opened_.list, figures_->names(), results_};
+  const auto put = [&](const std::filesystem::path& path, const char* what, const auto& make) {
+    if (path.empty()) return;
+    base::write_text(path, make());
+    fmt::print(stream, "{} -> {}\n", what, path.string());
+  };
+  put(arguments_.summary, "summary", [&] { return summary_table(summary); });
+  put(arguments_.page, "curves", [&] {
+    std::vector<std::size_t> curves;
+    for (std::size_t i = 0; i < figures_->names().size(); ++i)
+      if (figures_->is_curve(i)) curves.push_back(i);
+    return curves_page(summary, curves);
+  });
 }
 
 /// One case: its fields are shared out. A table: its cases are, each on one thread.
@@ -179,16 +247,18 @@ int run(const Arguments& arguments) {
   const auto opened = open(arguments, n_threads, timing);
   if (!arguments.to_standard_output()) std::filesystem::create_directories(arguments.output);
   CaseRunner runner(arguments, opened);
-  const std::size_t n_cases = opened.cases.size();
+  const std::size_t n_cases = runner.n_cases();
   predict_all(runner, n_cases, n_threads, timing);
+  runner.finish();
   timing.wall = whole.lap();
   if (arguments.timing) {
     fmt::print(stderr, "{}\nbundle {:.0f} % in the page cache before ({}), {}\n", timing.text(n_cases),
                100 * cached, cached > 0.99 ? "warm" : "cold", page_faults());
   }
-  if (runner.n_outside() > 0 && arguments.strict) {
-    throw ValidityError(fmt::format("{} of {} cases outside the trained range were not written",
-                                    runner.n_outside(), n_cases));
+  const auto n_outside = runner.n_with(model::Verdict::outside);
+  if (n_outside > 0 && arguments.strict) {
+    throw ValidityError(
+        fmt::format("{} of {} cases outside the trained range were not written", n_outside, n_cases));
   }
   return 0;
 }

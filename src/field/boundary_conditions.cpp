@@ -29,7 +29,7 @@ InputSchema read_schema(const std::filesystem::path& cases_csv) {
   std::vector<InputInfo> inputs;
   for (const auto& heading : table.headings) {
     const auto [name, symbol] = base::split_unit(heading);
-    if (name == "case" || name == "load") continue;
+    if (name == "case" || name == "load" || detail::is_comment_column(heading)) continue;
     if (name.empty()) throw InputError({.what = "a column without a name", .where = table.where});
     if (std::any_of(inputs.begin(), inputs.end(), [&n = name](const InputInfo& i) { return i.name == n; })) {
       throw InputError({.what = "boundary condition '" + name + "' appears twice", .where = table.where});

@@ -25,6 +25,17 @@ const base::Unit& unit_at(std::string_view symbol, const std::string& where) {
 
 std::string bracketed(const InputInfo& input) { return input.name + " [" + input.display_unit + "]"; }
 
+/// For "primary_air (kg/s)": the brackets that were meant; else the nearest name.
+std::string heading_advice(const std::string& name, const std::vector<std::string>& names) {
+  const auto open = name.find('(');
+  if (open != std::string::npos && name.ends_with(')')) {
+    const auto before = base::trim(name.substr(0, open));
+    const auto symbol = base::trim(name.substr(open + 1, name.size() - open - 2));
+    if (std::ranges::find(names, before) != names.end()) return "write '" + before + " [" + symbol + "]'";
+  }
+  return base::name_advice(name, names);
+}
+
 }  // namespace
 
 InputInfo input_info(std::string_view name, std::string_view symbol, const std::string& where) {
@@ -41,6 +52,16 @@ double to_si(double value, std::string_view symbol, const InputInfo& input, cons
                     .expected = "one of " + base::join(base::units_of(input.unit), ", ")});
 }
 
+bool is_comment_column(std::string_view heading) {
+  auto name = base::trim(heading);
+  std::ranges::transform(name, name.begin(), [](unsigned char c) {
+    return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
+  });
+  if (name.empty()) return true;
+  if (name.ends_with('s')) name.pop_back();
+  return name == "comment" || name == "note" || name == "remark";
+}
+
 Columns match_columns(const std::vector<std::string>& headings, const InputSchema& schema,
                       const std::string& where) {
   constexpr auto nowhere = std::numeric_limits<std::size_t>::max();
@@ -48,32 +69,29 @@ Columns match_columns(const std::vector<std::string>& headings, const InputSchem
   const auto names = schema.names();
   for (std::size_t column = 0; column < headings.size(); ++column) {
     const auto [name, symbol] = base::split_unit(headings[column]);
-    if (name == "case" || name == "load") continue;
+    if (name == "case" || name == "load" || is_comment_column(headings[column])) continue;
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
       throw InputError({.what = "unknown boundary condition '" + name + "'",
                         .where = where,
-                        .advice = base::name_advice(name, names)});
+                        .advice = heading_advice(name, names)});
     }
     const auto i = static_cast<std::size_t>(found - names.begin());
     if (columns.position[i] != nowhere)
       throw InputError({.what = "boundary condition '" + name + "' appears twice", .where = where});
-    if (symbol.empty() && schema[i].unit != "1") {
-      throw InputError({.what = "boundary condition '" + name + "' without a unit",
-                        .where = where,
-                        .expected = "'" + bracketed(schema[i]) + "'"});
-    }
-    (void)to_si(0, symbol, schema[i], where);
     columns.position[i] = column;
-    columns.symbol[i] = symbol;
+    columns.symbol[i] = symbol.empty() ? schema[i].display_unit : symbol;
+    (void)to_si(0, columns.symbol[i], schema[i], where);
   }
-  for (std::size_t i = 0; i < schema.size(); ++i) {
-    if (columns.position[i] != nowhere) continue;
-    throw InputError({.what = "missing boundary condition '" + names[i] + "'",
-                      .where = where,
-                      .advice = "add '" + bracketed(schema[i]) + "'"});
-  }
-  return columns;
+  std::vector<std::string> missing;
+  for (std::size_t i = 0; i < schema.size(); ++i)
+    if (columns.position[i] == nowhere) missing.push_back("'" + bracketed(schema[i]) + "'");
+  if (missing.empty()) return columns;
+  throw InputError({.what = missing.size() == 1
+                                ? "missing boundary condition " + missing.front()
+                                : std::to_string(missing.size()) +
+                                      " boundary conditions are missing: " + base::join(missing, ", "),
+                    .where = where});
 }
 
 double checked_load(double value, std::string_view symbol, const std::string& where) {

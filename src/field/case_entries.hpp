@@ -15,12 +15,15 @@ namespace elrom::field::detail {
 /// @throws InputError when `symbol` is unknown or of another dimension than the input
 [[nodiscard]] double to_si(double value, std::string_view symbol, const InputInfo& input,
                            const std::string& where);
+/// A column for people: without a heading, or called comment, note or remark (also in the plural).
+[[nodiscard]] bool is_comment_column(std::string_view heading);
 /// Headings "name [unit]" of the inputs matched to a schema.
 struct Columns {
   std::vector<std::size_t> position;  ///< place among the headings of every input, (n_inputs)
-  std::vector<std::string> symbol;    ///< unit as written, (n_inputs)
+  std::vector<std::string> symbol;    ///< unit as written, or the display unit where none is, (n_inputs)
 };
-/// @throws InputError for an unknown, missing or repeated input, a missing unit, a unit of another dimension
+/// @throws InputError for an unknown or repeated input, missing ones (all of them named), a unit of another
+/// dimension
 [[nodiscard]] Columns match_columns(const std::vector<std::string>& headings, const InputSchema& schema,
                                     const std::string& where);
 /// Fraction of full load from a value as written. @throws InputError unless it is one

@@ -1,5 +1,7 @@
 #include "elrom/io/csv.hpp"
 
+#include <algorithm>
+
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
@@ -89,11 +91,32 @@ class Parser {
   std::size_t at_ = 0, line_ = 1;
 };
 
-// Spreadsheets of some countries separate by semicolons.
+/// The first line that is no comment.
+std::string_view heading_line(std::string_view text) {
+  while (!text.empty()) {
+    const auto line = text.substr(0, text.find_first_of("\r\n"));
+    if (line.find_first_not_of(" \t") != std::string_view::npos && line.front() != '#') return line;
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+  }
+  return text;
+}
+
+/// Spreadsheets of some countries separate by semicolons, some programs by tabs.
 char separator_of(std::string_view text) {
-  const auto heading = text.substr(0, text.find_first_of("\r\n"));
-  return heading.find(',') == std::string_view::npos && heading.find(';') != std::string_view::npos ? ';'
-                                                                                                    : ',';
+  const auto heading = heading_line(text);
+  const auto count = [&](char c) { return std::count(heading.begin(), heading.end(), c); };
+  if (count(',') > 0) return ',';
+  return count(';') >= count('\t') && count(';') > 0 ? ';' : count('\t') > 0 ? '\t' : ',';
+}
+
+/// Excel's own first line, "sep=;", says what separates. @return whether it was there; it is taken away
+bool take_separator_line(std::string_view& text, char& separator) {
+  constexpr std::string_view key = "sep=";
+  const auto line = text.substr(0, text.find_first_of("\r\n"));
+  if (!line.starts_with(key) || line.size() != key.size() + 1) return false;
+  separator = line.back();
+  text.remove_prefix(line.size());  // its end stays, so that lines are counted right
+  return true;
 }
 
 std::string cells(std::size_t n) { return std::to_string(n) + (n == 1 ? " cell" : " cells"); }
@@ -109,7 +132,8 @@ CsvTable parse_csv(std::string_view text, std::string where) {
   if (text.find('\0') != std::string_view::npos)
     throw InputError({.what = "not a text file", .where = where});
   CsvTable table{.where = where};
-  Parser parser(text, separator_of(text), where);
+  if (!take_separator_line(text, table.separator)) table.separator = separator_of(text);
+  Parser parser(text, table.separator, where);
   while (!parser.at_end()) {
     const auto line = parser.line();
     auto record = parser.record();
@@ -124,6 +148,8 @@ CsvTable parse_csv(std::string_view text, std::string where) {
                         .found = cells(record.size()),
                         .expected = std::to_string(table.headings.size())});
     }
+    const bool blank = std::ranges::all_of(record, [](const std::string& cell) { return cell.empty(); });
+    if (blank && record.size() > 1) continue;  // a row that a spreadsheet left behind
     table.rows.push_back(std::move(record));
     table.lines.push_back(line);
   }

@@ -36,20 +36,20 @@ TEST_F(CaseListTest, PatternsChooseAndSettingsChange) {
   arguments_.case_patterns = {"load_*"};
   arguments_.settings = {"air=36", "fuel=3600 kg/h"};
 
-  const auto cases = case_list(arguments_, schema_);
+  const auto cases = case_list(arguments_, schema_).cases;
 
   ASSERT_EQ(cases.size(), 2U);
-  EXPECT_EQ(cases[1].name, "load_2");
+  EXPECT_EQ(cases[1].name, "load_2+air=36+fuel=1");
   EXPECT_THAT(cases[1].values, ElementsAre(::testing::DoubleEq(10), ::testing::DoubleEq(1)));
 }
 
 TEST_F(CaseListTest, SettingsAloneMustBeComplete) {
   arguments_.cases.clear();
   arguments_.settings = {"air=36"};
-  EXPECT_THAT(refusal(), HasSubstr("1 inputs are not given: fuel"));
+  EXPECT_THAT(refusal(), HasSubstr("1 input is not given: fuel"));
 
   arguments_.settings.emplace_back("fuel=2");
-  EXPECT_THAT(case_list(arguments_, schema_)[0].values, ElementsAre(::testing::DoubleEq(10), 2));
+  EXPECT_THAT(case_list(arguments_, schema_).cases[0].values, ElementsAre(::testing::DoubleEq(10), 2));
 }
 
 TEST_F(CaseListTest, UnknownCasesAndInputsNameTheNearest) {
@@ -65,16 +65,81 @@ TEST_F(CaseListTest, AnAbsurdCaseNameNeverBecomesAPath) {
   arguments_.cases.clear();
   arguments_.settings = {"air=36", "fuel=2"};
 
-  for (const char* name : {"../../evil", "", ".hidden", "a/b"}) {
+  for (const char* name : {"../../evil", ".hidden", "a/b"}) {
     arguments_.name = name;
     EXPECT_THAT(refusal(), HasSubstr("case name cannot be a file's name")) << name;
   }
 }
 
-TEST_F(CaseListTest, StandardOutputTakesOneCase) {
+TEST_F(CaseListTest, StandardOutputTakesSeveralCasesAsCsvAlone) {
   arguments_.output = "-";
-
+  arguments_.formats = {Format::ip};
   EXPECT_THAT(refusal(), HasSubstr("found 3 cases"));
+
+  arguments_.formats = {Format::csv};
+  EXPECT_EQ(case_list(arguments_, schema_).cases.size(), 3U);
+}
+
+TEST_F(CaseListTest, ANameIsForTheChangedCase) {
+  arguments_.case_patterns = {"load_1"};
+  arguments_.settings = {"air=37t/h"};
+  arguments_.name = "more_air";
+  EXPECT_EQ(case_list(arguments_, schema_).cases[0].name, "more_air");
+
+  arguments_.case_patterns = {"load_*"};
+  EXPECT_EQ(case_list(arguments_, schema_).cases[1].name, "load_2+more_air");
+}
+
+std::vector<std::string> names_of(const CaseList& list) {
+  std::vector<std::string> names;
+  for (const auto& one : list.cases) names.push_back(one.name);
+  return names;
+}
+
+TEST_F(CaseListTest, ASweepFollowsItsBaseOneInputAtATime) {
+  arguments_.case_patterns = {"load_1"};
+  arguments_.sweeps = {"air=10:11:0.5 kg/s", "fuel=2:1:-1"};
+
+  const auto list = case_list(arguments_, schema_);
+
+  EXPECT_THAT(names_of(list), ElementsAre("load_1", "load_1+air=36", "load_1+air=37.8", "load_1+air=39.6",
+                                          "load_1+fuel=2", "load_1+fuel=1"));
+  EXPECT_THAT(list.cases[2].values, ElementsAre(::testing::DoubleEq(10.5), 1));
+  EXPECT_THAT(list.cases[4].values, ElementsAre(10, 2));
+  EXPECT_EQ(list.origins[4].base, 0U);
+  EXPECT_THAT(list.origins[4].changed, ElementsAre(1));
+}
+
+TEST_F(CaseListTest, AGridIsEveryCombination) {
+  arguments_.case_patterns = {"load_*"};
+  arguments_.sweeps = {"air=36:72:36", "fuel=1:3:1"};
+  arguments_.grid = true;
+
+  const auto list = case_list(arguments_, schema_);
+
+  ASSERT_EQ(list.cases.size(), 2 * (1 + 2 * 3));
+  EXPECT_EQ(list.cases[7].name, "load_2");
+  EXPECT_EQ(list.cases[13].name, "load_2+air=72+fuel=3");
+  EXPECT_EQ(list.origins[13].base, 7U);
+}
+
+TEST_F(CaseListTest, SweepsThatAreNoneAreRefused) {
+  for (const char* sweep : {"air", "air=1:2", "air=1:2:0", "air=2:1:1", "air=a:2:1", "air=1:1e9:1"}) {
+    arguments_.sweeps = {sweep};
+    EXPECT_THAT(refusal(), HasSubstr("--sweep")) << sweep;
+  }
+  arguments_.sweeps = {"air=1:2:1", "air=3:4:1"};
+  EXPECT_THAT(refusal(), HasSubstr("'air' is swept twice"));
+}
+
+TEST_F(CaseListTest, ImpossibleInputsAreRefusedInTheUsersUnit) {
+  arguments_.case_patterns = {"load_1"};
+  for (const char* value : {"air=-1", "air=1e99", "fuel=-0.1kg/s"}) {
+    arguments_.settings = {value};
+    EXPECT_THAT(refusal(), HasSubstr("impossible ")) << value;
+  }
+  arguments_.settings = {"air=-36"};
+  EXPECT_THAT(refusal(), HasSubstr("impossible air in case load_1+air=-36: found -36 t/h"));
 }
 
 }  // namespace

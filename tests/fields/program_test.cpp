@@ -153,21 +153,14 @@ TEST_F(ProgramTest, WritesEveryFormatAtOnce) {
   EXPECT_THAT(test::read_bytes(folder_ / "out/good.csv"), HasSubstr("pressure_half_width [Pa]"));
 }
 
-TEST_F(ProgramTest, AFileCannotBeTheOutputFolder) {
-  const auto outcome = predict(output("cases.csv"));
-
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.text, HasSubstr("cases.csv is a file: expected a folder\n"));
-}
-
 TEST_F(ProgramTest, MistakesGetOneLineAndTheirExitStatus) {
   const std::pair<const char*, int> mistakes[] = {
-      {"--fields presure", 2}, {"--planes 0:6", 2},  {"--region 1:2", 2},
-      {"--case nobody", 2},    {"--set flw_0=3", 3}, {"--uncertainty 2", 2},
-      {"--frmat csv", 2},      {"--output - ", 2},   {"--set flow_0=nonsense", 2}};
+      {"--fields presure", 2}, {"--planes 0:6", 2},    {"--region 1:2", 2},     {"--case nobody", 2},
+      {"--set flw_0=3", 3},    {"--uncertainty 2", 2}, {"--frmat csv", 2},      {"--output - --format ip", 2},
+      {"--format 0", 2},       {"--set flow_0=-3", 3}, {"--sweep flow_0=1", 2}, {"--set flow_0=nonsense", 2}};
   for (const auto& [arguments, status] : mistakes) {
     const auto outcome = predict(std::string(arguments) + " " +
-                                 (std::string(arguments) == "--output - " ? "" : output("out")));
+                                 (std::string(arguments).starts_with("--output - ") ? "" : output("out")));
     const bool user_error = outcome.status == 2 || outcome.status == 3;
     EXPECT_TRUE(status == outcome.status || (user_error && std::string(arguments).starts_with("--set")))
         << arguments << ": " << outcome.status;
@@ -189,6 +182,90 @@ TEST_F(ProgramTest, DamagedOrWrongBundlesExitWith3) {
                              std::filesystem::copy_options::overwrite_existing);
   EXPECT_EQ(predict(output("out")).status, 3);
   EXPECT_THAT(files_in("out"), ::testing::IsEmpty());
+}
+
+TEST_F(ProgramTest, AStoreOrPredictionGivenAsBundleIsCalledWhatItIs) {
+  ASSERT_EQ(predict(output("out") + " --case good").status, 0);
+  const auto wrong = run("--bundle '" + (folder_ / "out/good.hdf").string() + "' --cases '" +
+                         (folder_ / "cases.csv").string() + "' " + output("more"));
+
+  EXPECT_EQ(wrong.status, 3);
+  EXPECT_THAT(wrong.text, HasSubstr("--bundle is a prediction, not a bundle"));
+}
+
+TEST_F(ProgramTest, AnOutputThatIsAFileIsRefusedByUs) {
+  const auto outcome = predict(output("cases.csv"));
+
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.text, HasSubstr("--output is a file, not a folder"));
+}
+
+TEST_F(ProgramTest, AWrongFormatListsTheNames) {
+  EXPECT_THAT(predict(output("out") + " --format 0").text, HasSubstr("expected hdf, csv, txt, ip"));
+}
+
+TEST_F(ProgramTest, ASettingLeavesTheBaseCasesFileAlone) {
+  ASSERT_EQ(predict(output("out") + " --case good").status, 0);
+  const auto before = test::read_bytes(folder_ / "out/good.hdf");
+
+  ASSERT_EQ(predict(output("out") + " --case good --set 'flow_0=7.5kg/s'").status, 0);
+
+  EXPECT_EQ(test::read_bytes(folder_ / "out/good.hdf"), before);
+  EXPECT_THAT(files_in("out"), ::testing::UnorderedElementsAre("good.hdf", "good+flow_0=27.hdf"));
+}
+
+TEST_F(ProgramTest, ASweepWritesASummaryAndAPageOfCurves) {
+  const auto outcome =
+      predict(output("out") + " --case good --format csv --sweep 'flow_0=7:8:0.5 kg/s' --page '" +
+              (folder_ / "page.html").string() + "'");
+
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  const auto lines = base::split(test::read_bytes(folder_ / "out/summary.csv"), '\n');
+  ASSERT_EQ(lines.size(), 6U);  // headings, base, three values, the end
+  const auto headings = base::split(lines[0], ','), base_case = base::split(lines[1], ','),
+             last = base::split(lines[4], ',');
+  const auto at = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(headings, name) - headings.begin());
+  };
+  EXPECT_EQ(last[0], "good+flow_0=28.8");
+  EXPECT_EQ(last[1], "good");
+  EXPECT_EQ(last[at("flow_0 [t/h]")], "28.8");
+  const double mean = std::stod(last[at("pressure mean [Pa]")]);
+  EXPECT_NEAR(std::stod(last[at("change of pressure mean [Pa]")]),
+              mean - std::stod(base_case[at("pressure mean [Pa]")]), 1e-5 * std::abs(mean));
+  EXPECT_THAT(
+      test::read_bytes(folder_ / "page.html"),
+      ::testing::AllOf(HasSubstr("<polyline"), HasSubstr("pressure mean [Pa]"), HasSubstr("</html>")));
+}
+
+TEST_F(ProgramTest, SeveralCasesStreamWithACaseColumnInTheTablesOrder) {
+  const auto outcome = predict("--fields pressure --planes 0 --output - --threads 2", false);
+
+  ASSERT_EQ(outcome.status, 0);
+  const auto lines = base::split(outcome.text, '\n');
+  ASSERT_EQ(lines.size(), 1 + 3 * 12 + 1);
+  EXPECT_EQ(lines[0], "case,plane,column,x [m],y [m],z [m],pressure [Pa]");
+  EXPECT_THAT(lines[1], ::testing::StartsWith("good,0,0,"));
+  EXPECT_THAT(lines[13], ::testing::StartsWith("far,0,0,"));
+  EXPECT_THAT(lines[36], ::testing::StartsWith("other,0,11,"));
+}
+
+TEST_F(ProgramTest, CasesComeFromStandardInputToo) {
+  const auto outcome = run("--bundle '" + (folder_ / "model.elrom").string() + "' --cases - " +
+                           output("out") + " < '" + (folder_ / "cases.csv").string() + "'");
+
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_EQ(files_in("out").size(), 3U);
+}
+
+TEST_F(ProgramTest, ALongTableIsCountedNotListed) {
+  const std::string sweep = " --case good --profile --sweep 'flow_0=7:8:0.01 kg/s'";
+  const auto counted = predict(output("out") + sweep);
+  const auto listed = predict(output("out") + sweep + " --verbose");
+
+  EXPECT_THAT(counted.text, ::testing::StartsWith("102 cases: "));
+  EXPECT_EQ(base::split(counted.text, '\n').size(), 3U);  // counts, summary, the end
+  EXPECT_GT(base::split(listed.text, '\n').size(), 102U);
 }
 
 TEST_F(ProgramTest, HelpIsNoError) {

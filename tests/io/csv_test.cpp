@@ -34,8 +34,13 @@ TEST(Csv, SemicolonsSeparateWhereTheHeadingHasNoComma) {
   EXPECT_THAT(parse_csv("a;b\n1;2\n", "t.csv").rows, ElementsAre(ElementsAre("1", "2")));
 }
 
-TEST(Csv, KeepsEmptyCells) {
-  EXPECT_THAT(parse_csv("a,b,c\n,,\n", "t.csv").rows, ElementsAre(ElementsAre("", "", "")));
+TEST(Csv, KeepsEmptyCellsButNoEmptyRows) {
+  EXPECT_THAT(parse_csv("a,b,c\n,x,\n,,\n", "t.csv").rows, ElementsAre(ElementsAre("", "x", "")));
+}
+
+TEST(Csv, SeparatesByWhatTheFirstLineSaysOrTheHeadingsShow) {
+  for (const char* text : {"sep=;\na;b\n1,5;2\n", "a;b\n1,5;2\n", "# a, comment\na\tb\n1,5\t2\n"})
+    EXPECT_THAT(parse_csv(text, "t.csv").rows, ElementsAre(ElementsAre("1,5", "2"))) << text;
 }
 
 TEST(Csv, NamesTheLineOfARaggedRow) {

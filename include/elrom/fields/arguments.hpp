@@ -16,12 +16,16 @@ namespace elrom::fields {
 
 struct Arguments {
   std::filesystem::path bundle;
-  std::filesystem::path cases;             ///< empty: one case from `settings` alone
+  std::filesystem::path cases;             ///< empty: one case from `settings` alone; "-": standard input
   std::vector<std::string> case_patterns;  ///< empty: all cases of the table
   std::vector<std::string> settings;       ///< "name=value [unit]"
-  std::string name = "case";               ///< of the case made from settings alone
+  std::string name;                        ///< of the case that settings make; empty: made of them
+  std::vector<std::string> sweeps;         ///< "name=start:stop:step [unit]"
+  bool grid = false;                       ///< every combination of the sweeps, not one at a time
   std::string output = ".";                ///< folder, or "-" for standard output
   std::vector<Format> formats;             ///< at least one
+  std::filesystem::path summary;           ///< table with a line a case; empty: none
+  std::filesystem::path page;              ///< curves over what is swept; empty: none
   std::vector<std::string> fields;
   field::Planes planes;
   std::optional<model::Box> region;
@@ -33,6 +37,7 @@ struct Arguments {
   bool audit = false;     ///< physics audit of every case, in the terminal and the file
   bool conserve = false;  ///< smallest change to the input inventory and the inlets' gas flow
   bool timing = false;
+  bool verbose = false;  ///< a line for every case, however many
   bool verify = true;
   bool sync = true;   ///< wait until a file is on the disk before it gets its name
   int n_threads = 0;  ///< 0: all

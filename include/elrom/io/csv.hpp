@@ -1,7 +1,8 @@
 #pragma once
-// Tables as text: one heading line, one record a line. Comma (or semicolon) separated, double quotes as in
-// RFC 4180, UTF-8 with or without byte order mark, any line ending. Blank lines and lines that begin with '#'
-// are skipped.
+// Tables as text: one heading line, one record a line. Separated by commas, by semicolons or tabs where the
+// headings have no comma, or by what Excel's first line "sep=;" says; double quotes as in RFC 4180, UTF-8
+// with or without byte order mark, any line ending. Lines and rows without content, and lines that begin
+// with '#', are skipped.
 //
 // Thread rule: plain values and pure functions.
 
@@ -14,7 +15,8 @@
 namespace elrom::io {
 
 struct CsvTable {
-  std::string where;                           ///< for messages: the file
+  std::string where;  ///< for messages: the file
+  char separator = ',';
   std::vector<std::string> headings;           ///< trimmed, (n_columns)
   std::vector<std::vector<std::string>> rows;  ///< trimmed unless quoted, (n_rows, n_columns)
   std::vector<std::size_t> lines;              ///< line of each row in the file, from 1, (n_rows)

@@ -41,8 +41,7 @@ struct PackedVtkHexahedra {
 /// where it has one dimension, a view of it where it has several.
 void show_cell_data(const Hdf5Group& cell_data, const Hdf5Dataset& values, const std::string& target,
                     const std::string& name);
-/// One vector a cell, a view of its components, so that it
-/// costs no values: what draws streamlines wants it so.
+/// One vector a cell, as streamlines want it: a view of its components, so that no value is there twice.
 void show_cell_vectors(const Hdf5Group& cell_data, std::span<const Hdf5Dataset> components,
                        const std::string& name);
 

@@ -1,0 +1,37 @@
+#pragma once
+// What a run found, a line a case: a table for spreadsheets, and curves over what was swept.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "case_list.hpp"
+#include "elrom/model/guard.hpp"
+
+namespace elrom::fields {
+
+/// Of one case. Thread rule: plain values.
+struct CaseResult {
+  model::Verdict verdict = model::Verdict::inside;
+  std::string reason;
+  double distance = 0;
+  std::vector<double> figures;  ///< empty: not predicted (--strict)
+};
+
+/// What the writers below share; everything is borrowed.
+struct Summary {
+  const field::InputSchema& schema;
+  const CaseList& list;
+  const std::vector<std::string>& figure_names;
+  std::span<const CaseResult> results;  //!< (list.cases)
+};
+
+/// CSV: case, base, verdict, distance, reason, what was swept in the user's unit, figures, and with
+/// bases the change of each figure against the base's. Empty: not known.
+[[nodiscard]] std::string summary_table(const Summary& summary);
+
+/// A page for a browser, without a network: one chart a figure of `curves` and a swept input, a line for each
+/// base and, of a grid, each combination of the other inputs.
+[[nodiscard]] std::string curves_page(const Summary& summary, std::span<const std::size_t> curves);
+
+}  // namespace elrom::fields
