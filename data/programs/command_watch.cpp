@@ -63,8 +63,8 @@ std::string run_command(const std::string& command, const std::filesystem::path&
   return exit_status == 0 ? "" : fmt::format("ended with status {}", exit_status);
 }
 
-/// Names of the store's cases while a batch and its command are under way: what a killed watch added, and told
-/// nobody of, is found by the next one.
+/// Names of the store's cases while a batch and its command are under way: what a killed watch added, and
+/// told nobody of, is found by the next one.
 class Pending {
  public:
   explicit Pending(const Options& options)

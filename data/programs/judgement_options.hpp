@@ -1,10 +1,10 @@
 #pragma once
 // How import and watch are told what to do with cases that the checks object to.
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "elrom/cli/cli.hpp"
 #include "elrom/ingest/import_checked.hpp"
 
 namespace elrom::programs {

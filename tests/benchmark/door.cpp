@@ -1,6 +1,6 @@
 // bench-door: what the checks at import find of planted faults, and whether they object to sound cases. Every
-// fault is planted into a case as exported; the case then comes to the reduced mesh and is judged among all the
-// others, as import judges it, and alone, as the first case of a new store.
+// fault is planted into a case as exported; the case then comes to the reduced mesh and is judged among all
+// the others, as import judges it, and alone, as the first case of a new store.
 
 #include <fmt/format.h>
 
