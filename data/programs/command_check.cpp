@@ -20,7 +20,7 @@
 namespace elrom::programs {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::vector<std::string> targets;
   std::filesystem::path furnace;
   std::string json;
@@ -30,7 +30,7 @@ struct Options {
 /// others. Files beside a store are brought to its mesh, as import would.
 class Targets {
  public:
-  Targets(const Options& options, ingest::Checker& checker) : checker_(checker) {
+  Targets(const CheckOptions& options, ingest::Checker& checker) : checker_(checker) {
     if (!options.furnace.empty()) furnace_ = field::read_furnace(options.furnace);
   }
 
@@ -87,7 +87,7 @@ class Targets {
   std::set<std::string> told_;
 };
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
   ingest::Checker checker;
   Targets(options, checker).add(options.targets);
   const auto findings = checker.findings();
@@ -112,14 +112,14 @@ int check(const Options& options) {
 
 }  // namespace
 
-void add_check(CLI::App& program, Work& chosen) {
+void add_check(cli::App& program, Work& chosen) {
   auto* command = program.add_subcommand(
       "check",
       R"(Looks for suspicious data: cells that are not finite or beyond physical bounds, unit mistakes, duplicate cases,
 cases that lie apart from the others, fields and inputs that never change, and physics: gas balance by plane, direction
 of flow, solids inventory, roughness, and whether the mesh fills the reduced one. Cases are compared with each other, so
 give the store (or all files) together with a new file. Exit status 3 when something is suspicious.)");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckOptions>();
   command
       ->add_option("targets", options->targets,
                    "A snapshot store, EL3D exports, Fluent tables, OpenFOAM cases")

@@ -20,7 +20,7 @@ namespace elrom::programs {
 namespace {
 
 /// As typed; empty: not given.
-struct Options {
+struct CollisionOptions {
   std::string protocol = "general", law = "linear", speed = "0:20 m/s";
   std::string diameter_1 = "315 um", diameter_2, density_1 = "1000 kg/m3", density_2, spin, approach_time;
   std::string restitution = "0.9", friction = "0", tangential_restitution, stiffness, youngs_modulus,
@@ -61,7 +61,7 @@ void expect_law(const char* option, const std::string& text, const particle::Con
                     .expected = "--law " + std::string(particle::law_names.name(kind))});
 }
 
-particle::Protocol protocol_of(const Options& options) {
+particle::Protocol protocol_of(const CollisionOptions& options) {
   const auto& or_first = [](const std::string& second, const std::string& first) {
     return second.empty() ? first : second;
   };
@@ -92,7 +92,7 @@ double default_stiffness(const particle::Protocol& protocol) {
   return stiffness;
 }
 
-particle::ContactLaw law_of(const Options& options, const particle::Protocol& protocol) {
+particle::ContactLaw law_of(const CollisionOptions& options, const particle::Protocol& protocol) {
   using particle::LawKind;
   particle::ContactLaw law;
   law.kind = particle::law_names.value<UsageError>(options.law);
@@ -114,13 +114,13 @@ particle::ContactLaw law_of(const Options& options, const particle::Protocol& pr
   return law;
 }
 
-std::string files_of(const Options& options) {
+std::string files_of(const CollisionOptions& options) {
   const auto megabytes = static_cast<double>(std::filesystem::file_size(options.output)) / 1e6;
   return fmt::format("{} ({:.3g} MB)", options.output.string(), megabytes) +
          (options.json.empty() ? "" : " and " + options.json.string());
 }
 
-int run_collisions(Options options) {
+int run_collisions(CollisionOptions options) {
   auto& job = options.job;
   job.protocol = protocol_of(options);
   job.law = law_of(options, job.protocol);
@@ -162,8 +162,8 @@ int run_collisions(Options options) {
 
 }  // namespace
 
-void add_collisions(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+void add_collisions(cli::App& program, Work& chosen) {
+  auto options = std::make_shared<CollisionOptions>();
   auto small = std::make_shared<bool>(false);
   auto& job = options->job;
   job.options.n_threads = base::available_threads();
@@ -201,10 +201,10 @@ void add_collisions(CLI::App& program, Work& chosen) {
   add("--speed-cap", options->speed_cap, "SPEED",
       "Cut velocities after the contact to this, as the source did (100 m/s) [default: not]");
   add("--steps-per-contact", job.options.steps_per_contact, "N", "Steps of a contact")
-      ->check(CLI::Range(4, 100000));
+      ->check(cli::Range(4, 100000));
   add("--seed", job.seed, "N", "Seed");
   add("--threads", job.options.n_threads, "N", "Processor threads; the result does not depend on them")
-      ->check(CLI::PositiveNumber);
+      ->check(cli::PositiveNumber);
   command->add_flag("--small", *small, "2000 pairs, unless given");
   command->add_option("--output", options->output, "File to write; one there is replaced")
       ->type_name("COLLISIONS.h5")

@@ -22,7 +22,7 @@ int run_generate(const ingest::GenerateOptions& options) {
 
 }  // namespace
 
-void add_generate(CLI::App& program, Work& chosen) {
+void add_generate(cli::App& program, Work& chosen) {
   auto options = std::make_shared<ingest::GenerateOptions>();
   auto small = std::make_shared<bool>(false);
   options->n_threads = base::available_threads();
@@ -43,7 +43,7 @@ of size and speed, never for claims of accuracy.)");
   add("--noise", options->noise, "Noise, as a share of a field's scale");
   add("--seed", options->seed, "Seed");
   add("--threads", options->n_threads, "Processor threads; the result does not depend on them")
-      ->check(CLI::PositiveNumber);
+      ->check(cli::PositiveNumber);
   command->add_flag("--small", *small, "24 cases of 12 planes x 60 columns, unless given");
   command->add_option("--store", options->store, "Store to write; must not exist")
       ->type_name("STORE.h5")

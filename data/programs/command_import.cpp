@@ -35,7 +35,7 @@ int run_import(const ingest::ImportOptions& options, const JudgementOptions& jud
 
 }  // namespace
 
-void add_import(CLI::App& program, Work& chosen) {
+void add_import(cli::App& program, Work& chosen) {
   auto options = std::make_shared<ingest::ImportOptions>();
   options->n_threads = base::available_threads();
   auto* command = program.add_subcommand(
@@ -65,7 +65,7 @@ mesh and append them to a snapshot store. All files are taken or none: the store
       ->type_name("NAME,...");
   command->add_option("--threads", options->n_threads, "Processor threads")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(cli::PositiveNumber);
   auto judgement = std::make_shared<JudgementOptions>();
   add_judgement(*command, *judgement);
   command->add_option("FILE", options->files, "CFD results, one a case")->type_name("FILE...");

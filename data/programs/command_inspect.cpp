@@ -46,7 +46,7 @@ std::string in_words(const nlohmann::ordered_json& description) {
 
 }  // namespace
 
-void add_inspect(CLI::App& program, Work& chosen) {
+void add_inspect(cli::App& program, Work& chosen) {
   struct Options {
     std::filesystem::path path;
     bool json = false;

@@ -47,7 +47,7 @@ int take_cells(const MeshOptions& options, const std::optional<std::size_t>& n_p
 
 }  // namespace
 
-void add_mesh(CLI::App& program, Work& chosen) {
+void add_mesh(cli::App& program, Work& chosen) {
   auto options = std::make_shared<MeshOptions>();
   auto* command = program.add_subcommand(
       "mesh",
@@ -72,13 +72,13 @@ the shipped furnace.)");
   add("--taper-height", options->furnace.taper_height_m, "Height at which the taper ends [m]")
       ->excludes(source);
   add("--planes-along", options->along, "Axis of SOURCE that planes lie across; reports show planes along z")
-      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->check(cli::IsMember({"x", "y", "z"}))
       ->needs(source);
   command
       ->add_option("--group-tolerance", options->tolerance_m,
                    R"(Cells of SOURCE whose coordinates differ by no more are one plane, or one row of it [m]
 [default: 1e-5 of the mesh's extent along the axis])")
-      ->check(CLI::NonNegativeNumber)
+      ->check(cli::NonNegativeNumber)
       ->needs(source);
   command->add_option("--output", options->output, "Mesh file to write")->type_name("MESH.h5")->required();
   command->callback([options, planes, &chosen] {

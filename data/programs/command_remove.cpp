@@ -11,7 +11,7 @@
 namespace elrom::programs {
 namespace {
 
-struct Options {
+struct RemoveOptions {
   std::filesystem::path store;
   std::vector<std::string> patterns;
 };
@@ -35,7 +35,7 @@ std::vector<std::string> matching(const field::SnapshotStore& store,
   return names;
 }
 
-int remove(const Options& options) {
+int remove(const RemoveOptions& options) {
   const auto store = field::SnapshotStore::open(options.store);
   const auto names = matching(store, options.patterns);
   const auto n_left = store.n_cases() - names.size();
@@ -54,12 +54,12 @@ int remove(const Options& options) {
 
 }  // namespace
 
-void add_remove(CLI::App& program, Work& chosen) {
+void add_remove(cli::App& program, Work& chosen) {
   auto* command = program.add_subcommand(
       "remove",
       R"(Take cases out of a snapshot store. The store is replaced whole at the end, or stays as it was. To keep a case and
 not learn from it, name it in study.toml instead ([train] exclude).)");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RemoveOptions>();
   command->add_option("--store", options->store, "Snapshot store")->type_name("STORE.h5")->required();
   command
       ->add_option("NAME", options->patterns,

@@ -22,7 +22,7 @@
 namespace elrom::programs {
 namespace {
 
-struct Options {
+struct WatchOptions {
   ingest::WatchOptions watch;
   JudgementOptions judgement;
   std::string command;
@@ -67,7 +67,7 @@ std::string run_command(const std::string& command, const std::filesystem::path&
 /// told nobody of, is found by the next one.
 class Pending {
  public:
-  explicit Pending(const Options& options)
+  explicit Pending(const WatchOptions& options)
       : store_(options.watch.import.store), file_(options.watch.folder / ".elrom-watch-pending") {}
 
   void begin() const {
@@ -99,7 +99,8 @@ class Pending {
 
 class Watch {
  public:
-  explicit Watch(const Options& options) : options_(options), pending_(options), watcher_(watch_options()) {}
+  explicit Watch(const WatchOptions& options)
+      : options_(options), pending_(options), watcher_(watch_options()) {}
 
   int run() {
     if (!options_.command.empty()) after(pending_.left_over());
@@ -162,7 +163,7 @@ class Watch {
     return static_cast<int>(ExitStatus::nothing_new);
   }
 
-  const Options& options_;
+  const WatchOptions& options_;
   std::unique_ptr<Log> log_ = make_console_log();
   std::stop_token stop_ = base::interrupt_token();
   Pending pending_;
@@ -172,8 +173,8 @@ class Watch {
 
 }  // namespace
 
-void add_watch(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+void add_watch(cli::App& program, Work& chosen) {
+  auto options = std::make_shared<WatchOptions>();
   auto& watch = options->watch;
   watch.import.n_threads = base::available_threads();
   auto* command = program.add_subcommand(
@@ -204,12 +205,12 @@ separated by commas); its failure is told and ends nothing)")
       ->type_name("DIR");
   command->add_option("--every", options->every, "Time between looks [s] [default: 10; with --once 1]")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(cli::PositiveNumber);
   command->add_flag("--once", options->once, "Look twice, import what is finished, and end");
   add_accept(*command, options->judgement);
   command->add_option("--threads", watch.import.n_threads, "Processor threads")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(cli::PositiveNumber);
   command->callback([options, &chosen] { chosen = [options] { return Watch(*options).run(); }; });
 }
 

@@ -11,13 +11,13 @@ namespace elrom::programs {
 using Work = std::function<int()>;
 
 // Each adds its subcommand to the program; `chosen` is set to its work when the user calls it.
-void add_import(CLI::App& program, Work& chosen);
-void add_mesh(CLI::App& program, Work& chosen);
-void add_inspect(CLI::App& program, Work& chosen);
-void add_check(CLI::App& program, Work& chosen);
-void add_remove(CLI::App& program, Work& chosen);
-void add_watch(CLI::App& program, Work& chosen);
-void add_generate(CLI::App& program, Work& chosen);
-void add_collisions(CLI::App& program, Work& chosen);
+void add_import(cli::App& program, Work& chosen);
+void add_mesh(cli::App& program, Work& chosen);
+void add_inspect(cli::App& program, Work& chosen);
+void add_check(cli::App& program, Work& chosen);
+void add_remove(cli::App& program, Work& chosen);
+void add_watch(cli::App& program, Work& chosen);
+void add_generate(cli::App& program, Work& chosen);
+void add_collisions(cli::App& program, Work& chosen);
 
 }  // namespace elrom::programs

@@ -19,8 +19,8 @@ struct JudgementOptions {
 };
 
 /// --accept CHECK,...
-void add_accept(CLI::App& command, JudgementOptions& options);
+void add_accept(cli::App& command, JudgementOptions& options);
 /// --on-suspicious and --accept
-void add_judgement(CLI::App& command, JudgementOptions& options);
+void add_judgement(cli::App& command, JudgementOptions& options);
 
 }  // namespace elrom::programs

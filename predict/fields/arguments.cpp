@@ -77,7 +77,7 @@ struct Texts {
   OntoTexts onto;
 };
 
-void add_input_options(CLI::App& app, Arguments& arguments) {
+void add_input_options(cli::App& app, Arguments& arguments) {
   app.add_option("--bundle", arguments.bundle, "bundle to predict with")->required();
   app.add_option("--cases", arguments.cases, "table of cases: .csv, .json or .toml, or - for standard input");
   base::comma_list(app.add_option("--case", arguments.case_patterns,
@@ -90,7 +90,7 @@ void add_input_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--grid", arguments.grid, "every combination of the sweeps");
 }
 
-void add_selection_options(CLI::App& app, Arguments& arguments, Texts& texts) {
+void add_selection_options(cli::App& app, Arguments& arguments, Texts& texts) {
   base::comma_list(app.add_option("--fields", arguments.fields, "only these fields (a,b,c), default: all"));
   app.add_option("--planes", texts.planes, "only these planes: 7, 0:10 (without 10) or 0:10,20,30:")
       ->type_name("RANGES");
@@ -99,7 +99,7 @@ void add_selection_options(CLI::App& app, Arguments& arguments, Texts& texts) {
       ->type_name("BOX");
   app.add_option("--builds", texts.builds,
                  "mean: combine builds as trained; best: the best build alone, faster")
-      ->check(CLI::IsMember({"mean", "best"}))
+      ->check(cli::IsMember({"mean", "best"}))
       ->capture_default_str();
   app.add_option("--uncertainty", arguments.level,
                  "half-widths of prediction intervals of this level, such as 0.9")
@@ -107,7 +107,7 @@ void add_selection_options(CLI::App& app, Arguments& arguments, Texts& texts) {
   app.add_flag("--profile", arguments.profile, "only the plane averages (weighted by volume)");
 }
 
-void add_output_options(CLI::App& app, Arguments& arguments, Texts& texts) {
+void add_output_options(cli::App& app, Arguments& arguments, Texts& texts) {
   app.add_option("--output", arguments.output,
                  "folder to write to (made when missing), or - for standard output")
       ->capture_default_str();
@@ -125,16 +125,16 @@ void add_output_options(CLI::App& app, Arguments& arguments, Texts& texts) {
                "do not write cases that are outside the trained range; exit status 4");
 }
 
-void add_physics_options(CLI::App& app, Arguments& arguments) {
+void add_physics_options(cli::App& app, Arguments& arguments) {
   app.add_flag("--audit", arguments.audit,
                "print and keep each case's physics audit (see below); needs all cells");
   app.add_flag("--conserve", arguments.conserve,
                "change each case as little as possible until solids and gas are conserved; needs all cells");
 }
 
-void add_run_options(CLI::App& app, Arguments& arguments, bool& no_verify, bool& no_sync) {
+void add_run_options(cli::App& app, Arguments& arguments, bool& no_verify, bool& no_sync) {
   app.add_option("--threads", arguments.n_threads, "number of threads, 0: all processors")
-      ->check(CLI::Range(0, 1024))
+      ->check(cli::Range(0, 1024))
       ->capture_default_str();
   app.add_flag("--no-verify", no_verify, "do not compare the bundle's digests (saves a few milliseconds)");
   app.add_flag("--no-sync", no_sync,
@@ -190,7 +190,7 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   Arguments arguments;
   Texts texts;
   bool no_verify = false, no_sync = false;
-  CLI::App app(lines_of(description) + "\n", "elrom-predict");
+  cli::App app(lines_of(description) + "\n", "elrom-predict");
   app.set_version_flag("--version", program_version());
   app.footer(lines_of(footer));
   app.column_width(24);

@@ -44,24 +44,24 @@ void check_foam(const Arguments& arguments) {
 
 }  // namespace
 
-void add_onto_options(CLI::App& app, OntoOptions& options, OntoTexts& texts) {
+void add_onto_options(cli::App& app, OntoOptions& options, OntoTexts& texts) {
   app.add_option("--onto", options.mesh,
                  "write .ip and openfoam on this mesh: an OpenFOAM case, or a file of cell centres "
                  "(.csv with x, y, z; .h5 with /mesh/centre)");
   app.add_option("--interpolation", texts.interpolation,
                  "conservative: means over the parts of cells that overlap, keeps the solids; trilinear: "
                  "smooth, between cells")
-      ->check(CLI::IsMember({"conservative", "trilinear"}))
+      ->check(cli::IsMember({"conservative", "trilinear"}))
       ->capture_default_str();
   base::comma_list(app.add_option("--names", texts.names, "field=name,...: names in .ip files"));
   app.add_option("--time", options.time, "openfoam: name of the time folder")->capture_default_str();
   app.add_option("--parcels", options.n_parcels,
                  "openfoam: number of parcels; default: as the case's cloud has, else 10000")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}));
+      ->check(cli::Range(std::size_t{1}, std::size_t{1'000'000'000}));
   app.add_option(
          "--parcel-spread", options.parcel_spread,
          "openfoam: standard deviation of ln d over all parcels; 0: every parcel has its cell's diameter")
-      ->check(CLI::Range(0.0, 2.0))
+      ->check(cli::Range(0.0, 2.0))
       ->capture_default_str();
   app.add_flag("--overwrite", options.overwrite, "openfoam: replace a time folder that is there");
 }

@@ -6,7 +6,7 @@
 
 #include "elrom/fields/arguments.hpp"
 
-namespace CLI {
+namespace elrom::cli {
 class App;
 }
 
@@ -18,7 +18,7 @@ struct OntoTexts {
   std::vector<std::string> names;
 };
 
-void add_onto_options(CLI::App& app, OntoOptions& options, OntoTexts& texts);
+void add_onto_options(cli::App& app, OntoOptions& options, OntoTexts& texts);
 /// @param arguments with its formats. @throws UsageError for texts that cannot be understood, and for options
 /// that do not go together
 void finish_onto_options(Arguments& arguments, const OntoTexts& texts);

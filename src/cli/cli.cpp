@@ -46,15 +46,16 @@ void read(const ::CLI::Option& option, const std::string& text, double& value) {
   if (!number) refuse_value(option, text, "a number");
   value = *number;
 }
-void read(const ::CLI::Option& option, const std::string& text, std::optional<double>& value) {
-  read(option, text, value.emplace());
-}
 template <std::integral T>
 void read(const ::CLI::Option& option, const std::string& text, T& value) {
   const auto* const end = text.data() + text.size();
   const auto [stop, fault] = std::from_chars(text.data(), end, value);
   if (fault != std::errc{} || stop != end)
     refuse_value(option, text, std::unsigned_integral<T> ? "a whole number of at least 0" : "a whole number");
+}
+template <class T>
+void read(const ::CLI::Option& option, const std::string& text, std::optional<T>& value) {
+  read(option, text, value.emplace());
 }
 
 template <class T>
@@ -70,10 +71,13 @@ void read_all(const ::CLI::Option& option, const Results& results, std::vector<T
 std::string shown(const std::string& value) { return value; }
 std::string shown(const std::filesystem::path& value) { return value.string(); }
 std::string shown(double value) { return base::number(value); }
-std::string shown(const std::optional<double>& value) { return value ? shown(*value) : ""; }
 template <std::integral T>
 std::string shown(T value) {
   return std::to_string(value);
+}
+template <class T>
+std::string shown(const std::optional<T>& value) {
+  return value ? shown(*value) : "";
 }
 template <class T>
 std::string shown(const std::vector<T>& values) {
@@ -90,6 +94,7 @@ constexpr bool is_list<std::vector<T>> = true;
 template <class T>
 const char* kind_of() {
   if (std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>) return "FLOAT";
+  if (std::is_same_v<T, std::optional<std::uint64_t>>) return "UINT";
   if (std::is_integral_v<T>) return std::is_signed_v<T> ? "INT" : "UINT";
   return "TEXT";
 }
@@ -168,6 +173,14 @@ Option* Option::take_all() {
   impl_->option->take_all();
   return this;
 }
+Option* Option::needs(Option* other) {
+  impl_->option->needs(other->impl_->option);
+  return this;
+}
+Option* Option::excludes(Option* other) {
+  impl_->option->excludes(other->impl_->option);
+  return this;
+}
 std::size_t Option::count() const { return impl_->option->count(); }
 
 App::App(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -210,6 +223,7 @@ ELROM_OPTION(std::int64_t);
 ELROM_OPTION(std::uint64_t);
 ELROM_OPTION(double);
 ELROM_OPTION(std::optional<double>);
+ELROM_OPTION(std::optional<std::uint64_t>);
 ELROM_OPTION(std::vector<std::string>);
 ELROM_OPTION(std::vector<std::filesystem::path>);
 #undef ELROM_OPTION

@@ -50,7 +50,7 @@ TEST(Furnace, ReadsWhatTheFileSays) {
 }
 
 TEST(Furnace, GivesReportsTheirWordsAndNeutralOnesWhereItNamesNone) {
-  const auto described = read_furnace(shipped).words, neutral = parse_furnace(least, "f.toml").words;
+  const auto described = read_furnace(shipped_file).words, neutral = parse_furnace(least, "f.toml").words;
   const auto one = parse_furnace(least + "[words]\ncase = \"run\"\n", "f.toml").words;
 
   EXPECT_EQ(described.case_word(1), "load");

@@ -1,8 +1,6 @@
 // Predictions on another mesh as the user of elrom-predict gets them, on the case that is shipped.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <numbers>
 
@@ -11,6 +9,7 @@
 #include "elrom/foam/foam_file.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "elrom/io/hdf5.hpp"
+#include "support/outcome.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -24,10 +23,7 @@ using ::testing::StartsWith;
 
 const std::string shipped = ELROM_SOURCE_DIR "/data/formats/instants/case";
 
-struct Outcome {
-  int status = -1;
-  std::string text;  ///< standard output and error together
-};
+using test::Outcome;
 
 class OntoTest : public ::testing::Test {
  protected:
@@ -43,14 +39,7 @@ class OntoTest : public ::testing::Test {
     const std::string command = ELROM_BIN_DIR "/elrom-predict --bundle '" +
                                 (folder_ / "model.elrom").string() + "' --cases '" +
                                 (folder_ / "cases.csv").string() + "' " + arguments + " 2>&1";
-    Outcome outcome;
-    std::FILE* pipe = ::popen(command.c_str(), "r");
-    char buffer[4096];
-    for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-      outcome.text.append(buffer, n);
-    const int status = ::pclose(pipe);
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return outcome;
+    return test::outcome_of(command);
   }
   [[nodiscard]] std::string output(const std::string& name) const {
     return "--output '" + (folder_ / name).string() + "' ";

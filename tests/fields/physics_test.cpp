@@ -1,14 +1,13 @@
 // --audit and --conserve as users run them: what is printed, what is in the file, what is refused.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "elrom/base/text.hpp"
 #include "elrom/io/hdf5.hpp"
+#include "support/outcome.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -20,10 +19,7 @@ using ::testing::Not;
 
 constexpr double inventory_kg = 60000, solid_density = 2400;
 
-struct Outcome {
-  int status = -1;
-  std::string text;
-};
+using test::Outcome;
 
 class PhysicsTest : public ::testing::Test {
  protected:
@@ -54,14 +50,7 @@ class PhysicsTest : public ::testing::Test {
         (folder_ / "out").string() + "' " + options);
   }
   [[nodiscard]] static Outcome run(const std::string& arguments) {
-    Outcome outcome;
-    std::FILE* pipe = ::popen((ELROM_BIN_DIR "/elrom-predict " + arguments + " 2>&1").c_str(), "r");
-    char buffer[4096];
-    for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-      outcome.text.append(buffer, n);
-    const int status = ::pclose(pipe);
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return outcome;
+    return test::outcome_of(ELROM_BIN_DIR "/elrom-predict " + arguments + " 2>&1");
   }
   [[nodiscard]] io::Hdf5File result() const { return io::Hdf5File::open(folder_ / "out/case.hdf"); }
   [[nodiscard]] std::vector<float> field(const std::string& name) const {

@@ -1,14 +1,13 @@
 // elrom-predict as its users run it: a process, its files, its exit status.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "elrom/base/text.hpp"
 #include "elrom/io/hdf5.hpp"
 #include "elrom/io/tensor_file.hpp"
+#include "support/outcome.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -17,10 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-struct Outcome {
-  int status = -1;
-  std::string text;  ///< standard output and error together
-};
+using test::Outcome;
 
 class ProgramTest : public ::testing::Test {
  protected:
@@ -39,16 +35,8 @@ class ProgramTest : public ::testing::Test {
                with_errors);
   }
   [[nodiscard]] static Outcome run(const std::string& arguments, bool with_errors = true) {
-    Outcome outcome;
-    std::FILE* pipe = ::popen(
-        (ELROM_BIN_DIR "/elrom-predict " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null")).c_str(),
-        "r");
-    char buffer[4096];
-    for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-      outcome.text.append(buffer, n);
-    const int status = ::pclose(pipe);
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return outcome;
+    return test::outcome_of(ELROM_BIN_DIR "/elrom-predict " + arguments +
+                            (with_errors ? " 2>&1" : " 2>/dev/null"));
   }
   [[nodiscard]] std::string output(const std::string& name) const {
     return "--output '" + (folder_ / name).string() + "'";

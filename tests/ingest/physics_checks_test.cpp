@@ -22,7 +22,7 @@ const field::Furnace& furnace() {
 }
 
 /// A dozen shipped cases of all loads.
-const std::vector<CfdCase>& shipped() {
+const std::vector<CfdCase>& shipped_set() {
   static const auto cases = [] {
     std::vector<CfdCase> result;
     for (const auto* name : {"train_000", "train_001", "train_002", "train_007", "train_015", "train_018",
@@ -41,7 +41,7 @@ void add(Checker& checker, const CfdCase& one, const field::Furnace* of = &furna
 /// Findings on a case that replaces the third.
 std::vector<Finding> among_others(const CfdCase& one) {
   Checker checker;
-  for (std::size_t i = 0; i < shipped().size(); ++i) add(checker, i == 2 ? one : shipped()[i]);
+  for (std::size_t i = 0; i < shipped_set().size(); ++i) add(checker, i == 2 ? one : shipped_set()[i]);
   return findings_on(checker.findings(), one.record.inputs.name);
 }
 
@@ -52,7 +52,7 @@ std::vector<Finding> alone(const CfdCase& one) {
 }
 
 CfdCase with_fault(const std::string& kind, std::size_t variant = 0) {
-  auto one = shipped()[2];
+  auto one = shipped_set()[2];
   for (const auto& fault : test::planted_faults())
     if (fault.kind == kind) fault.plant(one, variant);
   return one;
@@ -61,8 +61,8 @@ CfdCase with_fault(const std::string& kind, std::size_t variant = 0) {
 auto of_kind(const std::string& kind) { return Contains(Field(&Finding::kind, kind)); }
 
 TEST(PhysicsChecks, ShippedCasesRaiseNoAlarmTogetherOrAlone) {
-  EXPECT_THAT(among_others(shipped()[2]), IsEmpty());
-  for (const auto& one : shipped())
+  EXPECT_THAT(among_others(shipped_set()[2]), IsEmpty());
+  for (const auto& one : shipped_set())
     for (const auto& finding : alone(one)) ADD_FAILURE() << line_of(finding);
 }
 
@@ -151,25 +151,25 @@ TEST(PhysicsChecks, WithoutADescriptionNoDirectionIsWrong) {
   Checker checker;
   add(checker, with_fault("gas_z_reversed"), nullptr);
 
-  const auto found = findings_on(checker.findings(), shipped()[2].record.inputs.name);
+  const auto found = findings_on(checker.findings(), shipped_set()[2].record.inputs.name);
 
   EXPECT_THAT(found, Not(of_kind("flow_direction")));
   EXPECT_THAT(found, Not(of_kind("gas_balance")));
 }
 
 TEST(PhysicsChecks, LayersAreFoundWhereTheExportHasThem) {
-  const auto layers = layers_of(shipped()[0]);
+  const auto layers = layers_of(shipped_set()[0]);
   ASSERT_TRUE(layers);
   EXPECT_EQ(layers->n_planes, 33U);
   EXPECT_EQ(layers->n_columns, 210U);
 
-  auto mixed = shipped()[0];
+  auto mixed = shipped_set()[0];
   mixed.centre.row(5).swap(mixed.centre.row(5000));
   EXPECT_FALSE(layers_of(mixed));
 }
 
 TEST(PhysicsChecks, EveryKindOfFindingCanBeAccepted) {
-  for (const auto& one : shipped()) {
+  for (const auto& one : shipped_set()) {
     const auto layers = layers_of(one);
     for (const auto& reading : read_physics(view_of(one, &*layers, &furnace())))
       EXPECT_THAT(finding_kinds(), Contains(reading.check));

@@ -15,7 +15,7 @@ namespace {
 using test::random_matrix;
 using test::random_network;
 
-constexpr std::size_t n_planes = 7, n_columns = 9, n_inputs = 4;
+constexpr std::size_t planes_each = 7, columns_each = 9, n_inputs = 4;
 
 Submodel make_submodel(std::vector<std::int32_t> columns, std::size_t n_own, std::uint64_t seed,
                        std::size_t n_builds = 3) {
@@ -33,18 +33,19 @@ Submodel make_submodel(std::vector<std::int32_t> columns, std::size_t n_own, std
 BandedNetworks::Parts make_parts(PlaneEncodingKind encoding = PlaneEncodingKind::fourier,
                                  TransformKind transform = TransformKind::none) {
   BandedNetworks::Parts parts;
-  parts.n_columns = n_columns;
+  parts.n_columns = columns_each;
   parts.inputs = InputScaler::fit(random_matrix(12, n_inputs, base::Seed(1)).cast<double>());
-  parts.planes = {encoding, n_planes, 3};
+  parts.planes = {encoding, planes_each, 3};
   parts.transform = {transform, 0.01F};
-  parts.outputs = OutputScaler::fit(random_matrix(12, n_planes * n_columns, base::Seed(2)), n_columns, false);
+  parts.outputs =
+      OutputScaler::fit(random_matrix(12, planes_each * columns_each, base::Seed(2)), columns_each, false);
   parts.submodels = {make_submodel({0, 2, 5, 6}, parts.planes.size(), 3),
                      make_submodel({1, 3, 4, 7, 8}, parts.planes.size(), 4)};
   return parts;
 }
 
 std::vector<std::int32_t> all_planes() {
-  std::vector<std::int32_t> planes(n_planes);
+  std::vector<std::int32_t> planes(planes_each);
   std::iota(planes.begin(), planes.end(), 0);
   return planes;
 }
@@ -54,8 +55,8 @@ struct NetworkValues {
 };
 NetworkValues predict(const BandedNetworks& model, const std::vector<std::int32_t>& planes, bool best = false,
                       std::vector<double> inputs = {0.3, -0.2, 1.1, 0.7}) {
-  NetworkValues result{std::vector<float>(planes.size() * n_columns),
-                       std::vector<float>(planes.size() * n_columns)};
+  NetworkValues result{std::vector<float>(planes.size() * columns_each),
+                       std::vector<float>(planes.size() * columns_each)};
   Workspace workspace;
   model.predict({inputs, planes, best}, result.values, result.spread, workspace);
   return result;
@@ -90,7 +91,7 @@ TEST(BandedNetworks, MeanAndSpreadAreTakenOverTheBuildsInPhysicalUnits) {
       for (std::size_t b = 0; b < 3; ++b) sum += double{cell_value(parts, submodel, b, 5, j, inputs)};
       for (std::size_t b = 0; b < 3; ++b)
         squares += std::pow(double{cell_value(parts, submodel, b, 5, j, inputs)} - sum / 3, 2);
-      const std::size_t cell = 5 * n_columns + static_cast<std::size_t>(submodel.columns[j]);
+      const std::size_t cell = 5 * columns_each + static_cast<std::size_t>(submodel.columns[j]);
       EXPECT_NEAR(double{result.values[cell]}, sum / 3, 1e-5 * (1 + std::abs(sum)));
       EXPECT_NEAR(double{result.spread[cell]}, std::sqrt(squares / 2), 1e-5 * (1 + std::sqrt(squares)));
     }
@@ -114,9 +115,9 @@ TEST_P(Encodings, APlanesBitsDoNotDependOnTheOtherPlanes) {
   const BandedNetworks model(make_parts(GetParam()));
   const auto all = predict(model, all_planes());
 
-  for (std::int32_t plane = 0; plane < static_cast<std::int32_t>(n_planes); ++plane) {
+  for (std::int32_t plane = 0; plane < static_cast<std::int32_t>(planes_each); ++plane) {
     const auto one = predict(model, {plane});
-    const auto first = static_cast<std::ptrdiff_t>(plane) * static_cast<std::ptrdiff_t>(n_columns);
+    const auto first = static_cast<std::ptrdiff_t>(plane) * static_cast<std::ptrdiff_t>(columns_each);
     EXPECT_TRUE(std::equal(one.values.begin(), one.values.end(), all.values.begin() + first));
     EXPECT_TRUE(std::equal(one.spread.begin(), one.spread.end(), all.spread.begin() + first));
   }
@@ -143,8 +144,8 @@ TEST(BandedNetworks, MasksShareThePlanesOfAColumnOut) {
   parts.submodels[0].columns = {0, 1, 2, 3, 4, 5, 6, 7, 8};
   parts.submodels[0] = make_submodel(parts.submodels[0].columns, parts.planes.size(), 3);
   parts.submodels[1] = make_submodel(parts.submodels[0].columns, parts.planes.size(), 4);
-  parts.submodels[0].mask.assign(n_planes * n_columns, 0);
-  std::fill_n(parts.submodels[0].mask.begin(), 3 * n_columns + 4, 1);
+  parts.submodels[0].mask.assign(planes_each * columns_each, 0);
+  std::fill_n(parts.submodels[0].mask.begin(), 3 * columns_each + 4, 1);
   parts.submodels[1].mask = parts.submodels[0].mask;
   for (auto& bit : parts.submodels[1].mask) bit = bit == 0 ? 1 : 0;
   const BandedNetworks model(parts);
@@ -152,8 +153,10 @@ TEST(BandedNetworks, MasksShareThePlanesOfAColumnOut) {
 
   const auto result = predict(model, all_planes(), true);
 
-  EXPECT_FLOAT_EQ(result.values[3 * n_columns + 3], cell_value(parts, parts.submodels[0], 1, 3, 3, inputs));
-  EXPECT_FLOAT_EQ(result.values[3 * n_columns + 4], cell_value(parts, parts.submodels[1], 1, 3, 4, inputs));
+  EXPECT_FLOAT_EQ(result.values[3 * columns_each + 3],
+                  cell_value(parts, parts.submodels[0], 1, 3, 3, inputs));
+  EXPECT_FLOAT_EQ(result.values[3 * columns_each + 4],
+                  cell_value(parts, parts.submodels[1], 1, 3, 4, inputs));
 
   // Of planes that one submodel answers for, the other is not even read.
   io::TensorFile file;
@@ -181,13 +184,13 @@ TEST(BandedNetworks, RefusesACellThatTwoMasksCover) {
   auto parts = make_parts();
   parts.submodels[0] = make_submodel({0, 1, 2, 3, 4, 5, 6, 7, 8}, parts.planes.size(), 3);
   parts.submodels[1] = make_submodel(parts.submodels[0].columns, parts.planes.size(), 4);
-  parts.submodels[0].mask.assign(n_planes * n_columns, 1);
-  parts.submodels[1].mask.assign(n_planes * n_columns, 0);
+  parts.submodels[0].mask.assign(planes_each * columns_each, 1);
+  parts.submodels[1].mask.assign(planes_each * columns_each, 0);
   EXPECT_NO_THROW(BandedNetworks{parts});
-  parts.submodels[1].mask[4 * n_columns + 7] = 1;
+  parts.submodels[1].mask[4 * columns_each + 7] = 1;
 
   EXPECT_ERROR(InputError, "plane 4, column 7: found 2 submodels", BandedNetworks(parts));
-  parts.submodels[0].mask[4 * n_columns + 7] = parts.submodels[1].mask[4 * n_columns + 7] = 0;
+  parts.submodels[0].mask[4 * columns_each + 7] = parts.submodels[1].mask[4 * columns_each + 7] = 0;
   EXPECT_ERROR(InputError, "plane 4, column 7: found 0 submodels", BandedNetworks(parts));
 }
 

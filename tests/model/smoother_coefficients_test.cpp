@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index n_cases = 7, n_inputs = 2, n_modes = 3;
+constexpr Index n_known = 7, n_inputs = 2, n_fitted = 3;
 
 MatrixD random_matrix(Index rows, Index columns, std::uint64_t seed) {
   base::Random random{base::Seed(seed)};
@@ -46,13 +46,13 @@ SmootherCoefficients smoother(const MatrixD& z, const MatrixD& coefficients, boo
       FeatureMap(features, 2),
       math::Standardiser(Eigen::Vector2d::Zero(), Eigen::Vector2d::Ones()),
       z,
-      {{own, factor.solve(centred), Eigen::VectorXd::Ones(n_modes), factor.inverse_factor().cast<float>()}}};
+      {{own, factor.solve(centred), Eigen::VectorXd::Ones(n_fitted), factor.inverse_factor().cast<float>()}}};
 }
 
 Eigen::VectorXd predicted(const SmootherCoefficients& model, const Eigen::Vector2d& inputs) {
-  Eigen::VectorXd coefficients(n_modes);
+  Eigen::VectorXd coefficients(n_fitted);
   Workspace workspace;
-  model.predict({inputs.data(), 2}, {coefficients.data(), n_modes}, {}, false, workspace);
+  model.predict({inputs.data(), 2}, {coefficients.data(), n_fitted}, {}, false, workspace);
   return coefficients;
 }
 
@@ -60,11 +60,11 @@ class WithoutACase : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(OfEitherKind, WithoutACase, ::testing::Bool());
 
 TEST_P(WithoutACase, TheSmootherIsThatOfTheOthers) {
-  const MatrixD z = random_matrix(n_cases, n_inputs, 1), coefficients = random_matrix(n_cases, n_modes, 2);
+  const MatrixD z = random_matrix(n_known, n_inputs, 1), coefficients = random_matrix(n_known, n_fitted, 2);
   const Eigen::Vector2d inputs(0.3, -0.6);
-  for (Index left_out = 0; left_out < n_cases; ++left_out) {
+  for (Index left_out = 0; left_out < n_known; ++left_out) {
     std::vector<Index> rest;
-    for (Index i = 0; i < n_cases; ++i)
+    for (Index i = 0; i < n_known; ++i)
       if (i != left_out) rest.push_back(i);
     const MatrixD others = coefficients(rest, Eigen::all);
     const auto refitted = smoother(z(rest, Eigen::all), others, GetParam());
@@ -80,9 +80,9 @@ TEST_P(WithoutACase, TheSmootherIsThatOfTheOthers) {
 }
 
 TEST_P(WithoutACase, ACaseThatIsTakenOutAndPutBackChangesNothing) {
-  const MatrixD z = random_matrix(n_cases, n_inputs, 1), coefficients = random_matrix(n_cases, n_modes, 2);
+  const MatrixD z = random_matrix(n_known, n_inputs, 1), coefficients = random_matrix(n_known, n_fitted, 2);
   const auto whole = smoother(z, coefficients, GetParam());
-  const Index last = n_cases - 1;
+  const Index last = n_known - 1;
   const auto reduced = whole.without_case(static_cast<std::size_t>(last));
   Eigen::VectorXd own = coefficients.row(last).transpose();
   if (!GetParam()) own -= coefficients.topRows(last).colwise().mean().transpose();
@@ -95,8 +95,8 @@ TEST_P(WithoutACase, ACaseThatIsTakenOutAndPutBackChangesNothing) {
 }
 
 TEST(ModelWithoutACase, MovesItsMean) {
-  const MatrixD z = random_matrix(n_cases, n_inputs, 1), coefficients = random_matrix(n_cases, n_modes, 2);
-  MatrixF modes = MatrixF::Zero(n_modes, 4);  // orthogonal, as modes are
+  const MatrixD z = random_matrix(n_known, n_inputs, 1), coefficients = random_matrix(n_known, n_fitted, 2);
+  MatrixF modes = MatrixF::Zero(n_fitted, 4);  // orthogonal, as modes are
   modes.diagonal() << 2, 1, 3;
   const auto whole = std::make_shared<SmootherCoefficients>(smoother(z, coefficients, false));
   const std::shared_ptr<const FieldModel> model =

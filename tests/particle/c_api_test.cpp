@@ -1,13 +1,13 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <thread>
 
 #include "elrom/particle/collision.h"
 #include "elrom/particle/collision_model.hpp"
 #include "elrom/particle/exact_model.hpp"
+#include "support/outcome.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace elrom::particle {
@@ -157,13 +157,11 @@ TEST_F(CollisionCApi, ManyThreadsUseOneModel) {
   for (const auto& one : arrays) expect_the_models(pairs, one);
 }
 
-/// Output of a program.
+/// Output of a program that ends well.
 std::string said(const std::string& command) {
-  std::string output;
-  FILE* const pipe = popen(command.c_str(), "r");
-  for (int c = fgetc(pipe); c != EOF; c = fgetc(pipe)) output += static_cast<char>(c);
-  EXPECT_EQ(pclose(pipe), 0) << command;
-  return output;
+  const auto outcome = test::outcome_of(command);
+  EXPECT_EQ(outcome.status, 0) << command;
+  return outcome.text;
 }
 
 /// The pairs of collision_from_c.c and collision_from_python.py.

@@ -167,7 +167,7 @@ TEST_F(Accuracy, TheDescriptionGivesTheWords) {
 
 // Nobody described the cases, and none states a load: another problem than a furnace.
 TEST(AccuracyElsewhere, WordsAreNeutralAndNothingIsMadeOfLoadsThatAreMissing) {
-  const testing::SmallStudy study(folder("elsewhere"), {.described = false, .with_loads = false});
+  const SmallStudy study(folder("elsewhere"), {.described = false, .with_loads = false});
 
   const auto report = evaluate({.study = study.folder(), .figures = true}, silent_log());
   const auto page = html_page(report), table = terminal_table(report, false);

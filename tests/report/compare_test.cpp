@@ -21,9 +21,9 @@ using ::testing::Not;
 class Compare : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    study_ = std::make_unique<testing::SmallStudy>(
+    study_ = std::make_unique<SmallStudy>(
         std::filesystem::path(::testing::TempDir()) / ("elrom-compare-" + std::to_string(::getpid())),
-        testing::SmallStudy::Options{.main_method = "nearest", .n_held_out = 6});
+        SmallStudy::Options{.main_method = "nearest", .n_held_out = 6});
     study_->train("linear", {"train_*", "load_12", "load_13"}, file("knows.elrom"));
   }
   static void TearDownTestSuite() { study_.reset(); }
@@ -33,9 +33,9 @@ class Compare : public ::testing::Test {
                         const std::vector<std::string>& cases = {}, bool figures = false) {
     return compare({.a = a, .b = b, .cases = cases, .figures = figures}, silent_log());
   }
-  static std::unique_ptr<testing::SmallStudy> study_;
+  static std::unique_ptr<SmallStudy> study_;
 };
-std::unique_ptr<testing::SmallStudy> Compare::study_;
+std::unique_ptr<SmallStudy> Compare::study_;
 
 TEST_F(Compare, ABetterModelIsCalledBetterAndAWorseOneWorse) {
   const auto better = run(study_->folder(), linear()), worse = run(linear(), study_->folder());

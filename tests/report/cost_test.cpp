@@ -107,7 +107,7 @@ TEST(Cost, PartsAndReferenceReadBackTheSame) {
 }
 
 TEST(Cost, AStudyTellsItsPointsItsPartsAndWhatItWouldCostBare) {
-  const report::testing::SmallStudy study(file("cost-study"));
+  const SmallStudy study(file("cost-study"));
   base::write_text(study.folder() / "timing.json", R"({"kind": "elrom-timing", "format": [1, 1], "stages": {},
       "methods": {"linear": 3, "nearest": 0.25}, "method_processor_seconds": {"linear": 4, "nearest": 0.5},
       "candidates": {"linear": {"seconds": 1, "processor_seconds": 1},
@@ -120,7 +120,7 @@ TEST(Cost, AStudyTellsItsPointsItsPartsAndWhatItWouldCostBare) {
   EXPECT_GT(model.predict_ms, 0);
   EXPECT_GT(model.error_deviation, 0);
   EXPECT_EQ(report.parts.size(), 2u);
-  EXPECT_EQ(report.reference.n_cases, static_cast<double>(report::testing::SmallStudy::n_training));
+  EXPECT_EQ(report.reference.n_cases, static_cast<double>(SmallStudy::n_training));
   EXPECT_GT(report.reference.error, 0) << "the scatter of its repeated runs";
   EXPECT_THAT(in_words(report), ::testing::Contains(::testing::HasSubstr("networks cost 3.0 s")));
   EXPECT_THAT(report.points.back().name, ::testing::EndsWith(": linear alone"));

@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::filesystem::path folder(const std::string& name) {
+std::filesystem::path headline_folder(const std::string& name) {
   return std::filesystem::path(::testing::TempDir()) /
          ("elrom-headline-" + name + "-" + std::to_string(::getpid()));
 }
@@ -124,7 +124,7 @@ TEST(Headline, NothingIsClaimedOfErrorsBelowTheNoise) {
 
 // A bundle that had seen all cases shines; the report must not.
 TEST(HeadlineOfAStudy, BundlesOfOtherCasesAndOfHeldOutOnesAreMarked) {
-  const testing::SmallStudy study(folder("unlike"));
+  const SmallStudy study(headline_folder("unlike"));
   study.train("linear", {"train_*", "load_*"}, study.folder() / "model.elrom");
   study.train("nearest", {"train_?"}, study.folder() / "fewer.elrom");
   study.train("linear", {"train_*", "rep1"}, study.folder() / "knows.elrom");

@@ -17,7 +17,7 @@ namespace {
 
 using particle::SurrogateKind;
 
-struct Options {
+struct CollisionOptions {
   std::filesystem::path data, low, output, json, trial_file;
   std::string surrogate = "frame", regressor = "chebyshev", device = "cpu";
   surrogate::LearnSettings settings;
@@ -34,7 +34,7 @@ bool grows_trees(const surrogate::LearnSettings& settings) {
 
 // The source's two ranges: pairs up to a tenth of the speed get trees of
 // their own. Two-particle DEM makes them in less than a second.
-particle::CollisionSet slow_pairs(const Options& options, const particle::CollisionSet& set,
+particle::CollisionSet slow_pairs(const CollisionOptions& options, const particle::CollisionSet& set,
                                   const std::stop_token& stop) {
   if (!options.low.empty()) return particle::read_collisions(options.low);
   auto protocol = set.protocol;
@@ -64,7 +64,7 @@ nlohmann::ordered_json json_of(const surrogate::LearnedCollisions& learned) {
   return json;
 }
 
-void print(const Options& options, const surrogate::LearnedCollisions& learned) {
+void print(const CollisionOptions& options, const surrogate::LearnedCollisions& learned) {
   const auto& errors = learned.errors;
   fmt::print("{}: {} learned in {}.\n", options.output.string(), learned.bundle.model->text(),
              base::duration(learned.seconds));
@@ -81,7 +81,7 @@ void print(const Options& options, const surrogate::LearnedCollisions& learned) 
                  : fmt::format("{:.1f} % of the collisions gain energy", 100 * errors.gaining_share));
 }
 
-int run_collisions(Options options) {
+int run_collisions(CollisionOptions options) {
   auto& settings = options.settings;
   settings.surrogate = particle::surrogate_names.value<UsageError>(options.surrogate);
   settings.regressor = surrogate::regressor_names.value<UsageError>(options.regressor);
@@ -112,8 +112,8 @@ int run_collisions(Options options) {
 
 }  // namespace
 
-void add_collisions(CLI::App& app, Work& run) {
-  auto options = std::make_shared<Options>();
+void add_collisions(cli::App& app, Work& run) {
+  auto options = std::make_shared<CollisionOptions>();
   auto* command = app.add_subcommand(
       "collisions", "learn what two colliding spheres do, from a set made by elrom-data collisions");
   const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
@@ -127,12 +127,12 @@ void add_collisions(CLI::App& app, Work& run) {
   add("--low", options->low, "FILE",
       "document: a set of slow pairs for trees of their own [default: made here, up to a tenth of the speeds]");
   add("--trials", options->settings.trees.trials, "N", "Trials of the search for the trees' hyperparameters")
-      ->check(CLI::NonNegativeNumber);
+      ->check(cli::NonNegativeNumber);
   add("--trial-file", options->trial_file, "FILE",
       "Where trials are kept, so that a search goes on after a crash [default: OUTPUT.trials.sqlite]");
   add("--seed", options->seed, "N", "Seed");
   add("--threads", options->threads, "N", "Processor threads; the result does not depend on them")
-      ->check(CLI::PositiveNumber);
+      ->check(cli::PositiveNumber);
   add("--device", options->device, "NAME", "Where networks are trained: cpu, cuda");
   command->add_flag("--quiet", options->quiet, "Warnings only");
   command->add_option("--output", options->output, "Model to write; one there is replaced")

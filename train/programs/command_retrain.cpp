@@ -45,7 +45,7 @@ int run_retrain(const RetrainArguments& arguments) {
 
 }  // namespace
 
-void add_retrain(CLI::App& app, Work& run) {
+void add_retrain(cli::App& app, Work& run) {
   auto* command = app.add_subcommand(
       "retrain",
       R"(take new cases of the store into an existing study; the new model answers only when no field is

@@ -54,7 +54,7 @@ int train_within(double seconds, const StudyArguments& arguments, bool with_peer
   return status;
 }
 
-void add_training(CLI::App& app, Work& run, const std::string& name, const std::string& what,
+void add_training(cli::App& app, Work& run, const std::string& name, const std::string& what,
                   bool with_peers) {
   auto* command = app.add_subcommand(name, what);
   auto arguments = std::make_shared<StudyArguments>();
@@ -80,14 +80,14 @@ void add_training(CLI::App& app, Work& run, const std::string& name, const std::
 
 }  // namespace
 
-void add_run(CLI::App& app, Work& run) {
+void add_run(cli::App& app, Work& run) {
   add_training(
       app, run, "run",
       "every stage: split, screen, band, search, fit, peers; writes model.elrom and peers/.\nA study that has a model gets the new one only through the gate, as with retrain",
       true);
 }
 
-void add_fit(CLI::App& app, Work& run) {
+void add_fit(cli::App& app, Work& run) {
   add_training(app, run, "fit",
                "the model without its peers (what it needs of the earlier stages is made first)", false);
 }

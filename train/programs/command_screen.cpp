@@ -16,7 +16,7 @@ void print_bands(const std::vector<study::FieldOutcome>& outcomes) {
   }
 }
 
-void add_planning(CLI::App& app, Work& run, const std::string& name, const std::string& what,
+void add_planning(cli::App& app, Work& run, const std::string& name, const std::string& what,
                   bool with_search) {
   auto* command = app.add_subcommand(name, what);
   auto arguments = std::make_shared<StudyArguments>();
@@ -35,12 +35,12 @@ void add_planning(CLI::App& app, Work& run, const std::string& name, const std::
 
 }  // namespace
 
-void add_screen(CLI::App& app, Work& run) {
+void add_screen(cli::App& app, Work& run) {
   add_planning(app, run, "screen",
                "build the default network for every column and sort the columns into bands", false);
 }
 
-void add_search(CLI::App& app, Work& run) {
+void add_search(cli::App& app, Work& run) {
   add_planning(app, run, "search", "screen, then search the hyperparameters of every submodel", true);
 }
 

@@ -81,7 +81,7 @@ void print_timing(const path& folder) {
 
 }  // namespace
 
-void add_status(CLI::App& app, Work& run) {
+void add_status(cli::App& app, Work& run) {
   auto* command =
       app.add_subcommand("status", "what a study holds: cases, kept stages, trials, bundles, time");
   auto folder = std::make_shared<path>();

@@ -108,17 +108,17 @@ int roll_back(const path& folder, const std::string& date) {
   return 0;
 }
 
-struct Options {
+struct VersionOptions {
   path folder;
   int a = 0, b = 0;
   std::string date;
 };
 
-void add(CLI::App& app, Work& run, const std::string& name, const std::string& what,
+void add(cli::App& app, Work& run, const std::string& name, const std::string& what,
          const std::vector<std::string>& numbers, bool changes,
-         const std::function<int(const Options&)>& work) {
+         const std::function<int(const VersionOptions&)>& work) {
   auto* command = app.add_subcommand(name, what);
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<VersionOptions>();
   command->add_option("STUDY", options->folder, "folder of the study")->required();
   for (std::size_t i = 0; i < numbers.size(); ++i)
     command->add_option(numbers[i], i == 0 ? options->a : options->b, "number of a version")->required();
@@ -151,20 +151,20 @@ int tell(const study::Promotion& promotion, const path& folder) {
   return 0;
 }
 
-void add_versions(CLI::App& app, Work& run) {
+void add_versions(cli::App& app, Work& run) {
   add(app, run, "log", "versions of the study's model: what made each, the gate's verdict, which one answers",
-      {}, false, [](const Options& options) { return print_log(options.folder); });
+      {}, false, [](const VersionOptions& options) { return print_log(options.folder); });
   add(app, run, "diff", "what is other in version B than in A: cases, settings, methods, errors by field",
-      {"A", "B"}, false, [](const Options& options) {
+      {"A", "B"}, false, [](const VersionOptions& options) {
         const study::Versions versions(options.folder);
         fmt::print("{}", study::in_words(
                              study::difference_of(versions.known(options.a), versions.known(options.b))));
         return 0;
       });
   add(app, run, "promote", "make a version answer, whatever the gate said", {"N"}, true,
-      [](const Options& options) { return promote(options.folder, options.a, options.date); });
+      [](const VersionOptions& options) { return promote(options.folder, options.a, options.date); });
   add(app, run, "rollback", "make the version answer that answered before the present one", {}, true,
-      [](const Options& options) { return roll_back(options.folder, options.date); });
+      [](const VersionOptions& options) { return roll_back(options.folder, options.date); });
 }
 
 }  // namespace elrom::programs

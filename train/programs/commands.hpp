@@ -22,7 +22,7 @@ struct StudyArguments {
   std::vector<std::string> settings;  ///< "key=value"
   bool quiet = false;
 
-  void add_to(CLI::App& command);
+  void add_to(cli::App& command);
   /// study.toml with the command line on top.
   [[nodiscard]] study::Settings resolve() const;
   [[nodiscard]] std::unique_ptr<Log> log() const;
@@ -44,13 +44,13 @@ using StudyWork = std::function<int(const study::Settings& settings, const study
 
 /// A subcommand sets `run` when it is chosen; its value is the exit status.
 using Work = std::function<int()>;
-void add_run(CLI::App& app, Work& run);
-void add_screen(CLI::App& app, Work& run);
-void add_search(CLI::App& app, Work& run);
-void add_fit(CLI::App& app, Work& run);
-void add_retrain(CLI::App& app, Work& run);
-void add_status(CLI::App& app, Work& run);
-void add_versions(CLI::App& app, Work& run);  ///< log, diff, promote, rollback
-void add_collisions(CLI::App& app, Work& run);
+void add_run(cli::App& app, Work& run);
+void add_screen(cli::App& app, Work& run);
+void add_search(cli::App& app, Work& run);
+void add_fit(cli::App& app, Work& run);
+void add_retrain(cli::App& app, Work& run);
+void add_status(cli::App& app, Work& run);
+void add_versions(cli::App& app, Work& run);  ///< log, diff, promote, rollback
+void add_collisions(cli::App& app, Work& run);
 
 }  // namespace elrom::programs

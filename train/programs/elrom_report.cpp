@@ -127,27 +127,27 @@ int run_collisions(const Arguments& arguments, Log& log) {
   return 0;
 }
 
-void add_common(CLI::App& command, Arguments& arguments) {
+void add_common(cli::App& command, Arguments& arguments) {
   command.add_option("--store", arguments.store, "store of cases, instead of the one the study names");
   command.add_option("--threads", arguments.threads, "threads to use; 0: all")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(cli::NonNegativeNumber);
   command.add_flag("--quiet", arguments.quiet, "no progress, only results and warnings");
 }
 
-void add_reference(CLI::App& command, Arguments& arguments) {
+void add_reference(cli::App& command, Arguments& arguments) {
   auto& reference = arguments.reference;
   command.add_option("--case-name", reference.name, "what computed the cases")->capture_default_str();
   command
       .add_option("--case-hours", reference.hours,
                   "what it takes for one case, to show beside the models [h]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(cli::NonNegativeNumber);
   command.add_option("--case-cores", reference.cores, "cores that it takes")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(cli::PositiveNumber);
 }
 
-void add_accuracy(CLI::App& app, Arguments& arguments) {
+void add_accuracy(cli::App& app, Arguments& arguments) {
   auto& command = *app.add_subcommand(
       "accuracy", "Errors on the held-out cases, beside every peer; table, JSON, CSV and one HTML page");
   command.add_option("study", arguments.studies, "a trained study directory")->required()->expected(1);
@@ -163,7 +163,7 @@ void add_accuracy(CLI::App& app, Arguments& arguments) {
   add_common(command, arguments);
 }
 
-void add_compare(CLI::App& app, Arguments& arguments) {
+void add_compare(cli::App& app, Arguments& arguments) {
   auto& command = *app.add_subcommand(
       "compare", "Is B better than A? Field by field on the same cases; exit status 7 where B is worse");
   command.add_option("A", arguments.a, "a bundle (.elrom) or a trained study")->required();
@@ -176,7 +176,7 @@ void add_compare(CLI::App& app, Arguments& arguments) {
   add_common(command, arguments);
 }
 
-void add_learning_curve(CLI::App& app, Arguments& arguments) {
+void add_learning_curve(cli::App& app, Arguments& arguments) {
   auto& command = *app.add_subcommand(
       "learning-curve", "What more cases buy: the method fitted anew on subsets of its training cases");
   command.add_option("study", arguments.studies, "a trained study directory")->required()->expected(1);
@@ -190,10 +190,10 @@ void add_learning_curve(CLI::App& app, Arguments& arguments) {
                                       "fields, separated by commas; default: all of the study"));
   command.add_option("--points", arguments.points, "subset sizes from an eighth of the cases to all")
       ->capture_default_str()
-      ->check(CLI::Range(2, 50));
+      ->check(cli::Range(2, 50));
   command.add_option("--repeats", arguments.repeats, "random nested draws")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100));
+      ->check(cli::Range(1, 100));
   command.add_option("--seed", arguments.seed, "seed of the draws")->capture_default_str();
   command.add_flag("--v1-v2", arguments.v1_v2,
                    "print the source's comparison: a third of the cases against all, by field");
@@ -201,7 +201,7 @@ void add_learning_curve(CLI::App& app, Arguments& arguments) {
   add_common(command, arguments);
 }
 
-void add_cost(CLI::App& app, Arguments& arguments) {
+void add_cost(cli::App& app, Arguments& arguments) {
   auto& command = *app.add_subcommand(
       "cost", "Error against training and prediction time, for the studies named and their peers");
   command
@@ -216,7 +216,7 @@ void add_cost(CLI::App& app, Arguments& arguments) {
   add_common(command, arguments);
 }
 
-void add_collisions(CLI::App& app, Arguments& arguments) {
+void add_collisions(cli::App& app, Arguments& arguments) {
   auto& command = *app.add_subcommand(
       "collisions", "Collision models beside each other: errors, momentum and energy, what accuracy costs");
   command.add_option("set", arguments.collisions, "a set made by elrom-data collisions; its last 5 % judge")
@@ -227,7 +227,7 @@ void add_collisions(CLI::App& app, Arguments& arguments) {
   command.add_option("--html", arguments.html, "write the page: one file that opens offline");
   command.add_option("--calls", arguments.calls, "calls of each model that its speed is measured by")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(cli::PositiveNumber);
   command.add_flag("--small", arguments.small,
                    "accepted for scripts: this command ends within a minute anyway");
   command.add_flag("--quiet", arguments.quiet, "no progress, only results and warnings");

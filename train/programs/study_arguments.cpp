@@ -16,13 +16,13 @@ std::string settings_footer() {
 
 }  // namespace
 
-void StudyArguments::add_to(CLI::App& command) {
+void StudyArguments::add_to(cli::App& command) {
   command.add_option("STUDY", folder, "folder of the study; study.toml in it is optional")->required();
   command.add_option(
       "--store", store,
       "snapshot store [the setting store; the one of the last run; snapshots.h5 in the folder]");
   command.add_option("--effort", effort, "quick, standard or thorough [the setting effort, standard]")
-      ->check(CLI::IsMember({"quick", "standard", "thorough"}));
+      ->check(cli::IsMember({"quick", "standard", "thorough"}));
   command.add_option("--threads", threads, "threads of every stage, 0: all [the setting threads, 0]");
   command.add_option("--device", device, "where LibTorch trains: cpu or cuda [the setting device, cpu]");
   command.add_option("--date", date, "kept in the model and the log of versions [the setting date: none]");

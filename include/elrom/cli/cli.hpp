@@ -45,6 +45,8 @@ class Option {
   Option* delimiter(char between);
   Option* allow_extra_args(bool value = true);
   Option* take_all();
+  Option* needs(Option* other);             ///< given only beside other
+  Option* excludes(Option* other);          ///< given only without other
   [[nodiscard]] std::size_t count() const;  ///< values given
 
   struct Impl;
@@ -61,9 +63,9 @@ template <class T, class... Types>
 concept one_of = (std::same_as<T, Types> || ...);
 /// What an option's value can be read into. Numbers are decimal.
 template <class T>
-concept Value =
-    one_of<T, std::string, std::filesystem::path, int, unsigned, std::int64_t, std::uint64_t, double,
-           std::optional<double>, std::vector<std::string>, std::vector<std::filesystem::path>>;
+concept Value = one_of<T, std::string, std::filesystem::path, int, unsigned, std::int64_t, std::uint64_t,
+                       double, std::optional<double>, std::optional<std::uint64_t>, std::vector<std::string>,
+                       std::vector<std::filesystem::path>>;
 
 /// A program, or one of its subcommands.
 class App {
@@ -97,7 +99,3 @@ class App {
 };
 
 }  // namespace elrom::cli
-
-namespace elrom {
-namespace CLI = cli;
-}
