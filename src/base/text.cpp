@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace elrom::base {
 
@@ -31,20 +32,27 @@ std::string join(const std::vector<std::string>& parts, std::string_view separat
 
 namespace {
 
-// Levenshtein distance, one row at a time.
+// Optimal string alignment distance: letters put in, left out or changed, and neighbours in the wrong order,
+// which Levenshtein's distance counts twice.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> before, above, row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    before = std::exchange(above, row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({substitute, row[j] + 1, row[j - 1] + 1});
+      row[j] = std::min({above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1), above[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
     }
   }
   return row.back();
+}
+
+bool same_letters(std::string a, std::string b) {
+  std::ranges::sort(a);
+  std::ranges::sort(b);
+  return a == b;
 }
 
 }  // namespace
@@ -54,7 +62,9 @@ std::optional<std::string> closest_name(std::string_view name, const std::vector
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const auto& candidate : candidates) {
     const auto distance = edit_distance(name, candidate);
-    if (distance < best_distance) {
+    const bool nearer = distance < best_distance ||
+                        (best && distance == best_distance && same_letters(std::string(name), candidate));
+    if (nearer) {
       best = &candidate;
       best_distance = distance;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
@@ -131,6 +132,16 @@ const ::CLI::App& called(const ::CLI::App& program) {
   return commands.empty() ? program : *commands.front();
 }
 
+/// The first word for which the command has no place.
+std::optional<std::string> word_too_many(const ::CLI::App& app) {
+  if (const auto extra = app.remaining(); !extra.empty()) return extra.front();
+  for (const auto* option : app.get_options()) {
+    const auto most = static_cast<std::size_t>(option->get_items_expected_max());
+    if (option->get_positional() && option->count() > most) return option->results()[most];
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string full_name(const ::CLI::App& app) {
@@ -143,10 +154,9 @@ void look_for_slips(const ::CLI::App& program, const Words& words) {
 
 void refuse(const ::CLI::App& program, const ::CLI::ParseError& error) {
   const auto& app = called(program);
-  const auto extra = app.remaining();
-  if (!extra.empty())
+  if (const auto word = word_too_many(app))
     throw UsageError(
-        {.what = full_name(app) + " does not take '" + extra.front() + "'", .advice = look_at_help(app)});
+        {.what = full_name(app) + " does not take '" + *word + "'", .advice = look_at_help(app)});
   std::vector<std::string> missing;
   for (const auto* option : app.get_options())
     if (option->get_required() && option->count() == 0) missing.push_back(form_of(*option));

@@ -9,6 +9,8 @@ import sys
 WORDS = ["word_1_behind_the_option", "word_2_behind_the_option"]
 # What a command wants to see before it looks at its files.
 BEFORE = {"import": ["--mesh", str(pathlib.Path(__file__).parents[2] / "data/mesh/furnace_20x42x66.h5")]}
+# What an option must hold for its command to go on.
+VALUES = {"--accept": "unit"}
 
 
 def run(*command):
@@ -36,7 +38,8 @@ def mistakes(command):
         if not kind.endswith("..."):
             continue
         needed = [part for other, its in known.items() if "REQUIRED" in its and other != name for part in (other, "x")]
-        for given in ([name, "hdf"], [name + "=hdf"]):
+        value = VALUES.get(name, "hdf")
+        for given in ([name, value], [f"{name}={value}"]):
             line = [*command, *BEFORE.get(command[-1], []), *needed, *given, *WORDS]
             said = run(*line)
             # The first word is a file that is not there, or there is a word too many.

@@ -13,6 +13,13 @@ TEST(Text, ClosestNameFindsASlipOfThePen) {
   EXPECT_EQ(closest_name("pressure", known), std::nullopt);
 }
 
+TEST(Text, LettersInTheWrongOrderAreOneSlip) {
+  EXPECT_EQ(closest_name("htlm", {"help", "html"}), "html");
+  EXPECT_EQ(closest_name("dfif", {"fit", "diff"}), "diff");
+  EXPECT_EQ(closest_name("casse", {"case", "cases"}), "cases") << "as near, but of the same letters";
+  EXPECT_EQ(closest_name("caes", {"case", "cases"}), "case");
+}
+
 TEST(Text, MatchesShellPatterns) {
   EXPECT_TRUE(matches("load_064", "load_*"));
   EXPECT_TRUE(matches("rep1_064", "rep?_*"));

@@ -21,7 +21,10 @@ struct Program {
   int minutes = 10;
   double salt = 0.5;
   std::optional<double> pepper;
-  bool quiet = false;
+  std::optional<std::uint64_t> lids;
+  std::vector<std::string> tables;
+  double weight = 0;
+  bool quiet = false, open = false;
   std::string called;
 
   Program() {
@@ -37,8 +40,13 @@ struct Program {
     boil->add_option("--pepper", pepper, "g");
     boil->add_flag("--quiet,-q", quiet, "No words");
     boil->add_option("DISH", dishes, "What")->required();
+    auto* lid = boil->add_option("--lid", lids, "How many lids");
+    boil->add_option("--weight", weight, "g, on the lid")->needs(lid);
+    boil->add_flag("--open", open, "No lid")->excludes(lid);
     boil->callback([this] { called = "boil"; });
-    app.add_subcommand("serve", "Serves.")->callback([this] { called = "serve"; });
+    auto* serve = app.add_subcommand("serve", "Serves.");
+    serve->add_option("TABLE", tables, "Where")->expected(1);
+    serve->callback([this] { called = "serve"; });
   }
 
   std::optional<int> parse(std::vector<const char*> words) {
@@ -95,8 +103,8 @@ TEST(CommandLine, MissingAndTooMuchAreNamed) {
   EXPECT_EQ(refused({"boil"}), "cook boil needs --output POT, DISH; 'cook boil --help' lists what it takes");
   EXPECT_EQ(refused({"boil", "--output", "--quiet", "rice"}), "--output has no value: expected --output POT");
   EXPECT_EQ(refused({"boil", "rice", "--output"}), "--output has no value: expected --output POT");
-  EXPECT_EQ(refused({"serve", "rice"}),
-            "cook serve does not take 'rice'; 'cook serve --help' lists what it takes");
+  EXPECT_EQ(refused({"serve", "left", "right"}),
+            "cook serve does not take 'right'; 'cook serve --help' lists what it takes");
   EXPECT_EQ(refused({"boil", "--minutes", "3", "--minutes", "4"}),
             "--minutes is given twice: expected one value");
   EXPECT_EQ(refused({"--output", "pot", "boil"}),
@@ -110,6 +118,17 @@ TEST(CommandLine, ValuesThatCannotBeAreRefused) {
             "--minutes: found '7.5', expected a whole number");
   EXPECT_EQ(refused({"boil", "rice", "--output", "pot", "--minutes", "91"}),
             "--minutes: found '91', expected a number from 1 to 90");
+}
+
+TEST(CommandLine, OptionsThatDoNotGoTogetherAreRefused) {
+  EXPECT_THAT(refused({"boil", "rice", "--output", "pot", "--weight", "3"}),
+              HasSubstr("--weight requires --lid"));
+  EXPECT_THAT(refused({"boil", "rice", "--output", "pot", "--lid", "1", "--open"}),
+              HasSubstr("--lid excludes --open"));
+  Program program;
+  EXPECT_FALSE(program.parse({"boil", "rice", "--output", "pot", "--lid", "1", "--weight", "3"}));
+  EXPECT_EQ(program.lids, 1u);
+  EXPECT_EQ(program.weight, 3);
 }
 
 TEST(CommandLine, WordsBehindTwoDashesAreNoOptions) {

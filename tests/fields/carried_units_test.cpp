@@ -49,7 +49,7 @@ class CarriedUnits : public ::testing::Test {
 TEST_F(CarriedUnits, AreConvertedInTablesAndSettings) {
   ASSERT_EQ(predict("shown", "heat_flux [kW/m2]", "0.007"), 0) << test::read_bytes(folder_ / "said");
   ASSERT_EQ(predict("si", "heat_flux [W/m2]", "7"), 0) << test::read_bytes(folder_ / "said");
-  ASSERT_EQ(predict("set", "heat_flux [W/m2]", "1", "--set 'heat_flux=0.007 kW/m2'"), 0);
+  ASSERT_EQ(predict("set", "heat_flux [W/m2]", "1", "--name set --set 'heat_flux=0.007 kW/m2'"), 0);
   ASSERT_EQ(predict("other", "heat_flux [kW/m2]", "7"), 0);
 
   EXPECT_EQ(pressure("shown"), pressure("si"));
