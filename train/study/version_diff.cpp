@@ -68,7 +68,9 @@ void tell_fields(const model::BundleReader& bundle, bool is_a,
 std::string shown(double nrmse) { return std::isfinite(nrmse) ? base::rounded(nrmse, 3) : "not known"; }
 
 std::string list(const std::string& what, const std::vector<std::string>& names) {
-  return names.empty() ? "" : fmt::format("{} {}: {}\n", names.size(), what, base::join(names, ", "));
+  if (names.empty()) return "";
+  return fmt::format("{} {} {}: {}\n", names.size(), names.size() == 1 ? "case" : "cases", what,
+                     base::join(names, ", "));
 }
 
 }  // namespace
@@ -98,8 +100,8 @@ BundleDifference difference_of(const std::filesystem::path& a, const std::filesy
 }
 
 std::string in_words(const BundleDifference& difference) {
-  std::string text = list("cases added", difference.added) + list("cases removed", difference.removed) +
-                     list("cases with other values", difference.changed);
+  std::string text = list("added", difference.added) + list("removed", difference.removed) +
+                     list("with other values", difference.changed);
   if (text.empty()) text = "the same cases\n";
   if (!difference.knows_content) text += "whether cases of one name changed is not known: an older bundle\n";
   if (!difference.knows_settings)
