@@ -18,7 +18,7 @@ constexpr std::array<const char*, 8> colours{"#1f6fb4", "#d1661c", "#2a8f4a", "#
                                              "#7a5c3a", "#c8408f", "#5f6b73", "#a09a1a"};
 constexpr const char* style = R"(
 <style>
-body { font: 14px/1.4 sans-serif; margin: 2em auto; max-width: 1360px; color: #222 }
+body { font: 14px/1.4 sans-serif; margin: 2em auto; max-width: 1360px; padding: 0 1em; color: #222 }
 svg { margin: 6px; background: #fff } figure { display: inline-block; margin: 0 }
 text { font-size: 11px; fill: #222 } .grid { stroke: #ddd } .edge { fill: #fff; stroke-width: 2 }
 .outside { fill: #fff; stroke: #c00; stroke-width: 2 } .key { display: inline-block; margin-right: 1.5em }

@@ -39,7 +39,7 @@ std::string verdict_section(const Comparison& comparison) {
   for (const auto& field : comparison.fields) body += verdict_row(field_label(field.field), field, false);
   body += verdict_row("mean over fields", comparison.mean, true);
   const auto lead = fmt::format(
-      "NRMSE pooled over the cases, and by how much B's is below A's, with the {:.0f} % interval over the cases "
+      "NRMSE pooled over the cases (1: predicting the mean of A's training cases), and by how much B's is below A's, with the {:.0f} % interval over the cases "
       "(bootstrap, both on the same draws). Better and worse where the interval leaves out zero.",
       100 * gain_level);
   return section(

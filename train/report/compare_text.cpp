@@ -110,7 +110,9 @@ std::string terminal_table(const Comparison& comparison) {
                        gain_text(one.gain), verdict_text(one.gain));
   };
   for (const auto& field : comparison.fields) text += row(field_label(field.field), field);
-  text += line + row("mean", comparison.mean) + "\n  " + headline(comparison) + '\n';
+  text += line + row("mean", comparison.mean) +
+          "  NRMSE: 0 is perfect, 1 is predicting the mean of A's training cases\n\n  " +
+          headline(comparison) + '\n';
   if (!comparison.left_out.empty())
     text += "  Left out, since A or B was trained on them: " + base::join(comparison.left_out, ", ") + '\n';
   if (!comparison.missing.empty())
