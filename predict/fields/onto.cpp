@@ -159,14 +159,15 @@ void Onto::read_case(const Arguments& arguments, const model::BundleReader& bund
              }};
 }
 
-std::string Onto::lines(double before, double after) const {
+std::string Onto::lines(double before, double after, std::optional<double> factor) const {
   std::string text;
   if (!places_.volume.empty() && before > 0) {
     const bool mass = solid_density_ > 0;
-    text += fmt::format("\n  onto {}: solids {} {} predicted, {} there ({:+.3f} %)", options_.mesh.string(),
+    text += fmt::format("\n  onto {}: solids {} {} predicted, {} there ({:+.3f} %{})", options_.mesh.string(),
                         base::rounded(before * (mass ? solid_density_ : 1), 6), mass ? "kg" : "m3",
                         base::rounded(after * (mass ? solid_density_ : 1), 6),
-                        thousandths(100 * (after / before - 1)));
+                        thousandths(100 * (after / before - 1)),
+                        factor ? fmt::format("; scaled by {:.5f}", *factor) : "");
   }
   if (const auto n = interpolator_->n_outside(); n > 0) {
     text +=
@@ -201,13 +202,14 @@ Onto::Placed Onto::place(const model::PredictionFrame& frame, const model::Predi
   }
   const auto predicted = prediction.field(prediction.values, frame, *i_fraction);
   const auto there = std::span(placed.values).subspan(*i_fraction * n, n);
+  std::optional<double> factor;
   if (options_.interpolation == Interpolation::conservative && !places_.volume.empty()) {
     const double now = sum_of(there, places_.volume);
-    const double factor = now > 0 ? interpolator_->integral(predicted) / now : 1;
-    for (auto& value : there) value = static_cast<float>(value * factor);
+    factor = now > 0 ? interpolator_->integral(predicted) / now : 1;
+    for (auto& value : there) value = static_cast<float>(value * *factor);
   }
-  placed.text =
-      lines(sum_of(predicted, source_volume_), places_.volume.empty() ? 0 : sum_of(there, places_.volume));
+  placed.text = lines(sum_of(predicted, source_volume_),
+                      places_.volume.empty() ? 0 : sum_of(there, places_.volume), factor);
   return placed;
 }
 

@@ -37,7 +37,8 @@ class Onto {
 
  private:
   void read_case(const Arguments& arguments, const model::BundleReader& bundle);
-  [[nodiscard]] std::string lines(double before, double after) const;
+  /// @param before,after solids' volume [m3], 0: not known @param factor that made them equal; none: none did
+  [[nodiscard]] std::string lines(double before, double after, std::optional<double> factor = {}) const;
 
   OntoOptions options_;
   std::optional<foam::FoamCase> case_;

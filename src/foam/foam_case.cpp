@@ -1,5 +1,7 @@
 #include "elrom/foam/foam_case.hpp"
 
+#include <fcntl.h>
+#include <stdio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -181,6 +183,15 @@ struct Remains {
   }
 };
 
+/// `folder` gets the name `target`; what had it gets the name `folder`, so that a kill at any moment leaves
+/// one of the two whole under `target`. File systems that cannot exchange names lack it for a moment.
+void put_in_place(const fs::path& folder, const fs::path& target) {
+  if (::renameat2(AT_FDCWD, folder.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return;
+  if (fs::exists(target)) fs::rename(target, folder.string() + ".old");
+  const Remains replaced{folder.string() + ".old"};
+  fs::rename(folder, target);
+}
+
 }  // namespace
 
 FoamCase read_foam_case(const fs::path& directory) {
@@ -216,8 +227,7 @@ void write_time_folder(const FoamCase& of, const fs::path& target, const StartFi
   folder.copy_others();
   if (!of.cloud.empty())
     write_cloud(unfinished.folder / "lagrangian" / of.cloud, parcels, solid_density, time, note);
-  fs::remove_all(target);
-  fs::rename(unfinished.folder, target);
+  put_in_place(unfinished.folder, target);
 }
 
 }  // namespace elrom::foam

@@ -26,7 +26,7 @@ struct Section {
 
 const std::vector<Section>& sections() {
   static const std::vector<Section> all = {
-      {"kills", "kill -9 at random moments of import, training, prediction, collisions", kills},
+      {"kills", "kill -9 at random moments of import, training, prediction, starts, collisions", kills},
       {"network_kills", "kill -9 at random moments of networks' training", network_kills},
       {"truncations", "files cut at many lengths are refused by name", truncations},
       {"flipped_bytes", "changed bytes of a bundle are found", flipped_bytes},

@@ -57,8 +57,8 @@ struct Workshop {
                                                          std::size_t n_pairs = 9000) const;
 };
 
-/// kill -9 at random moments of import, training, prediction and the making of collisions; afterwards old or
-/// new state, and the next run ends.
+/// kill -9 at random moments of import, training, prediction, the start of an OpenFOAM run and the making of
+/// collisions; afterwards old or new state, and the next run ends.
 Tally kills(const Workshop& workshop);
 /// kill -9 at random moments of a training of networks, again and again until it ends: its bundle is byte for
 /// byte that of a run left alone, and so are its trials.

@@ -117,6 +117,46 @@ void kill_predictions(const Workshop& shop, std::size_t n, base::Random& random,
   tally.count(again.status == 0 && predictions_whole(output), "prediction after kills: " + again.output);
 }
 
+/// Of all files of a folder, their names too.
+std::string digest_of(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files[fs::relative(entry.path(), folder)] = base::sha256_file(entry.path());
+  base::Sha256 digest;
+  for (const auto& [name, of_file] : files) digest.add(name).add(of_file);
+  return digest.hex();
+}
+
+/// Time folders of an OpenFOAM case, replaced by turns by the starts of two cases.
+void kill_starts(const Workshop& shop, std::size_t n, base::Random& random, Tally& tally) {
+  const auto foam = shop.folder / "foam", start = foam / "0";
+  fs::copy(shop.source / "data/formats/instants/case", foam, fs::copy_options::recursive);
+  const auto command = [&](const std::string& name) {
+    auto words = shop.predict_command(shop.folder / "study_whole" / "model.elrom", foam);
+    for (const auto& word :
+         {"--case", name.c_str(), "--format", "openfoam", "--onto", foam.c_str(), "--overwrite"})
+      words.emplace_back(word);
+    return words;
+  };
+  std::map<std::string, std::string> whole;
+  double seconds = 0;
+  for (const auto* name : {"load_064", "load_098"}) {
+    const auto made = run(command(name));
+    if (made.status != 0) throw std::runtime_error("cannot make a start: " + made.output);
+    seconds = made.seconds;
+    whole[digest_of(start)] = name;
+  }
+  const auto others = digest_of(foam / "13");
+  for (std::size_t i = 0; i < n; ++i) {
+    kill_at_random(command(i % 2 == 0 ? "load_064" : "load_098"), 1.1 * seconds, random);
+    tally.count(fs::exists(start) && whole.contains(digest_of(start)), "starts: a broken time folder");
+  }
+  const auto again = run(command("load_064"));
+  tally.count(again.status == 0 && whole[digest_of(start)] == "load_064",
+              "start after kills: " + again.output);
+  tally.count(digest_of(foam / "13") == others, "starts: another time folder changed");
+}
+
 /// Kills through one set until a run ends by itself; its bytes are those of a run left alone.
 void kill_collisions(const Workshop& shop, std::size_t n, base::Random& random, Tally& tally) {
   const auto whole = shop.folder / "whole_collisions.h5", output = shop.folder / "killed_collisions.h5";
@@ -274,6 +314,7 @@ Tally kills(const Workshop& workshop) {
   kill_trainings(workshop, workshop.times(100, 10), random, tally);
   kill_promotions(workshop, workshop.times(40, 8), random, tally);
   kill_predictions(workshop, workshop.times(40, 6), random, tally);
+  kill_starts(workshop, workshop.times(100, 8), random, tally);
   kill_collisions(workshop, workshop.times(60, 6), random, tally);
   kill_tree_searches(workshop, workshop.times(40, 4), random, tally);
   return tally;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <numbers>
+#include <sstream>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/text.hpp"
@@ -73,7 +74,8 @@ TEST_F(OntoTest, AStartReadsBackAsWhatWasPredicted) {
       predict("--case good --format hdf,openfoam --time 1 --parcels 30000 " + output("out") + onto());
   ASSERT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_THAT(outcome.text, HasSubstr("30000 parcels in cloud kinematicCloud"));
-  EXPECT_THAT(outcome.text, HasSubstr("there (+0.000 %)")) << "one mesh refines the other: nothing is lost";
+  EXPECT_THAT(outcome.text, HasSubstr("there (+0.000 %; scaled by 1.00000)"))
+      << "one mesh refines the other: nothing is lost";
   EXPECT_THAT(outcome.text, Not(HasSubstr("outside the reduced mesh")));
 
   // The started case: the shipped one with this as its only time folder.
@@ -145,11 +147,35 @@ TEST_F(OntoTest, FluentFilesLieAtTheGivenCentresUnderTheGivenNames) {
       StartsWith("3\n3\n2\n2\nphase-2-x-velocity\npressure\n(5.000000000e+00\n6.000000000e+00\n)\n(1.3"));
 }
 
+TEST_F(OntoTest, FluentValuesAreMeansOverTheGivenCells) {
+  const std::string centres = ELROM_SOURCE_DIR "/data/formats/instants/averages.h5";
+  const auto outcome = predict("--case good --format hdf,ip --fields gas_velocity_z,pressure " +
+                               output("out") + onto(centres));
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+
+  const auto pressure = predicted("pressure");
+  std::istringstream file(base::read_text(folder_ / "out/good.ip"));
+  std::vector<double> last;  // of the last list in parentheses
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("(")) last.clear();
+    if (const auto value = base::to_double(line.substr(line.starts_with("(") ? 1 : 0)))
+      last.push_back(*value);
+  }
+  ASSERT_EQ(last.size(), 6930U);
+  // Above the taper, where the nearest centre tells the cell: 2 x 2 x 2 equal predicted cells each.
+  for (std::size_t x = 0; x < 10; ++x) {
+    double sum = 0;
+    for (const std::size_t child : {0, 1, 20, 21, 840, 841, 860, 861})
+      sum += static_cast<double>(pressure[40 * 840 + 2 * x + child]);
+    EXPECT_NEAR(last[20 * 210 + x], sum / 8, 1e-6 * std::abs(sum)) << x;
+  }
+}
+
 TEST_F(OntoTest, TrilinearSaysWhatItChangedOfTheSolids) {
   const auto outcome = predict("--case good --format ip --interpolation trilinear " + output("out") +
                                onto(ELROM_SOURCE_DIR "/data/formats/instants/averages.h5"));
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.text, ::testing::ContainsRegex("solids .* m3 predicted, .* there \\([+-].*%\\)"));
+  EXPECT_THAT(outcome.text, ::testing::ContainsRegex("solids .* m3 predicted, .* there \\([+-][0-9.]+ %\\)"));
 }
 
 TEST_F(OntoTest, MistakesAreOneLineEach) {

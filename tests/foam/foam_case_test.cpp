@@ -1,8 +1,11 @@
 #include "elrom/foam/foam_case.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
+#include <thread>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
@@ -82,6 +85,23 @@ TEST_F(FoamCaseTest, ATimeFolderIsReplacedAsAWhole) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "3/old"));
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
     EXPECT_THAT(entry.path().filename().string(), Not(HasSubstr("tmp")));
+}
+
+TEST_F(FoamCaseTest, WhileItIsReplacedATimeFolderIsThereWhole) {
+  const auto found = read_foam_case(folder_.path());
+  write_time_folder(found, folder_ / "3", start_, {}, 2400, "note");
+  std::atomic<bool> ends = false;
+  std::size_t n_looks = 0, n_missing = 0;
+  std::jthread onlooker([&] {
+    for (; !ends; ++n_looks)
+      if (::access((folder_ / "3/p").c_str(), R_OK) != 0) ++n_missing;
+  });
+  for (int i = 0; i < 20; ++i) write_time_folder(found, folder_ / "3", start_, {}, 2400, "note");
+  ends = true;
+  onlooker.join();
+
+  EXPECT_GT(n_looks, 20U);
+  EXPECT_EQ(n_missing, 0U) << "of " << n_looks;
 }
 
 TEST_F(FoamCaseTest, WhatIsMissingIsSaidByFile) {
