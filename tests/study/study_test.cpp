@@ -405,7 +405,7 @@ TEST_F(SmallStudy, RetrainingReusesTheEarlierPlan) {
   Study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {}).fit();
   write_small_store(folder.path() / "snapshots.h5", 4, 20);
   Study study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {});
-  study.reuse_plans_of(model::BundleReader(folder.path() / "model.elrom").info().cases);
+  study.begin_at(folder.path() / "model.elrom");
 
   study.fit(folder.path() / "candidate.elrom");
 
@@ -426,7 +426,7 @@ TEST_F(SmallStudy, ARunAfterRetrainingMakesItsOwnPlan) {
   write_small_store(folder.path() / "snapshots.h5", 4, 20);
   {
     Study study(folder.path(), one_band, {.trainer = trainer}, silent_log(), {});
-    study.reuse_plans_of(model::BundleReader(folder.path() / "model.elrom").info().cases);
+    study.begin_at(folder.path() / "model.elrom");
     study.fit(folder.path() / "candidate.elrom");
   }
 
