@@ -92,11 +92,9 @@ networks::RecordSource NetworksMethod::screened_records(const field::FieldData& 
 struct NetworksMethod::Records {
   Records(const field::FieldData& data, std::span<const std::size_t> cases,
           const networks::FieldSettings& settings, const FitContext& context)
-      : known_cases(context.warm == nullptr ? std::vector<std::size_t>()
-                                            : context.warm->known_among(cases)),
+      : known_cases(context.warm == nullptr ? std::vector<std::size_t>() : context.warm->known_among(cases)),
         known(data, known_cases, {settings.records, settings.parts, context.seed}),
-        all(data, cases,
-            {settings.records, settings.parts, context.seed, places_among(cases, known_cases)}),
+        all(data, cases, {settings.records, settings.parts, context.seed, places_among(cases, known_cases)}),
         planned_cases(known_cases.empty() ? std::vector(cases.begin(), cases.end()) : known_cases) {}
 
   [[nodiscard]] bool go_on() const { return !known_cases.empty(); }

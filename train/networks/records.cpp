@@ -263,9 +263,8 @@ RecordSource::RecordSource(const field::FieldData& data, std::span<const std::si
       key_(base::digest_of_members(data_, recipe_)) {}
 
 const RecordSet& RecordSource::get() const {
-  std::call_once(once_, [&] {
-    set_ = make_records(data_, parts_of(data_, recipe_), recipe_.options, recipe_.known);
-  });
+  std::call_once(
+      once_, [&] { set_ = make_records(data_, parts_of(data_, recipe_), recipe_.options, recipe_.known); });
   return set_;
 }
 

@@ -38,16 +38,13 @@ int train_within(double seconds, const StudyArguments& arguments, bool with_peer
   const auto begin = std::chrono::steady_clock::now();
   const auto model = study::cost_model(arguments.folder, settings, log);
   const auto levels = study::budget_levels(settings, model);
-  const auto chosen = study::levels_within(levels, seconds);
-  for (const auto& level : chosen)
-    fmt::print("planned: {} (about {})\n", level.name, base::duration(level.seconds));
   int status = 0;
   const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  (void)study::run_within(seconds - taken, chosen, log, base::interrupt_token(),
-                          [&](const study::Settings& own, const std::stop_token& stop) {
-                            status = train(arguments, with_peers, own, tools, log, stop);
-                          });
-  for (const auto& sentence : study::left_out(levels, chosen, model)) fmt::print("{}\n", sentence);
+  const auto spent = study::run_within(seconds - taken, levels, log, base::interrupt_token(),
+                                       [&](const study::Settings& own, const std::stop_token& stop) {
+                                         status = train(arguments, with_peers, own, tools, log, stop);
+                                       });
+  for (const auto& sentence : study::left_out(levels, spent, model)) fmt::print("{}\n", sentence);
   fmt::print("{} of {}; the settings used are in {}\n",
              base::duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()),
              base::duration(seconds), (arguments.folder / "resolved.toml").string());

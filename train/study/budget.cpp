@@ -32,6 +32,7 @@ constexpr double standard_networks = 5;  // effort "standard" as a multiple of "
 constexpr double margin = 0.85;          // share of the time that is planned with: other work comes and goes
 
 constexpr double for_a_simple_peer = 0.07;  // share of the time kept back while there is no model at all
+constexpr double for_writing = 0.02;        // and while there is one, to take it up again
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -139,26 +140,23 @@ std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel
   return levels;
 }
 
-std::vector<BudgetLevel> levels_within(const std::vector<BudgetLevel>& levels, double seconds) {
-  std::vector<BudgetLevel> chosen;
-  double left = margin * seconds;
-  for (const auto& level : levels) {
-    if (level.settings.peers.networks && level.settings.method == "auto") {
-      if (!chosen.empty() && level.seconds <= left - chosen.back().seconds) chosen.push_back(level);
-    } else if (chosen.empty() || level.seconds <= left) {
-      chosen.assign(1, level);
-    }
+std::optional<std::size_t> next_level(const std::vector<BudgetLevel>& levels, double seconds,
+                                      const BudgetRun& run) {
+  std::optional<std::size_t> next;
+  for (std::size_t i = run.done ? *run.done + 1 : 0; i < levels.size(); ++i) {
+    const bool needs_a_model = levels[i].settings.method == "auto" && levels[i].settings.peers.networks;
+    if (needs_a_model && (!run.done || next)) continue;
+    if (levels[i].seconds * run.pace <= margin * seconds) next = i;
   }
-  return chosen;
+  return next || run.done ? next : std::optional<std::size_t>(0);
 }
 
-std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const std::vector<BudgetLevel>& run,
+std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const BudgetRun& run,
                                   const CostModel& model) {
   std::vector<std::string> words;
-  for (const auto& level : levels) {
-    if (std::ranges::find(run, level.name, &BudgetLevel::name) != run.end()) continue;
-    if (!run.empty() && level.seconds <= run.front().seconds) continue;
-    auto text = fmt::format("left out: {} (about {})", level.name, base::duration(level.seconds));
+  for (std::size_t i = run.done ? *run.done + 1 : 0; i < levels.size(); ++i) {
+    const auto& level = levels[i];
+    auto text = fmt::format("left out: {} (about {})", level.name, base::duration(level.seconds * run.pace));
     if (level.settings.peers.networks)
       text += model.networks_had_no_part
                   ? "; they had no part in the present model, which tried them: expect nothing of it"
@@ -169,33 +167,43 @@ std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const 
                   : "; a peer that beats the kernel on some field would be found";
     words.push_back(text);
   }
+  if (words.empty())
+    words.push_back(
+        fmt::format("nothing was left out at effort {}: more time buys nothing{}, more cases do",
+                    levels.back().settings.effort,
+                    levels.back().settings.peers.networks && levels.back().settings.effort != "thorough"
+                        ? " but a longer search of the networks (a higher effort)"
+                        : ""));
   return words;
 }
 
-Settings run_within(double seconds, const std::vector<BudgetLevel>& chosen, Log& log,
-                    const std::stop_token& stop,
-                    const std::function<void(const Settings&, std::stop_token)>& train) {
-  check(!chosen.empty(), "run_within: a level");
+BudgetRun run_within(double seconds, const std::vector<BudgetLevel>& levels, Log& log,
+                     const std::stop_token& stop,
+                     const std::function<void(const Settings&, std::stop_token)>& train) {
+  check(!levels.empty(), "run_within: a level");
   const auto begin = Clock::now();
-  const BudgetLevel* done = nullptr;
-  for (const auto& level : chosen) {
-    const double kept_back = done == nullptr ? for_a_simple_peer : 0;
+  BudgetRun run;
+  while (const auto next = next_level(levels, seconds - since(begin), run)) {
+    const auto& level = levels[*next];
+    log.info(fmt::format("planned: {} (about {})", level.name, base::duration(level.seconds * run.pace)));
+    const double kept_back = run.done ? for_writing : for_a_simple_peer;
+    const auto from = Clock::now();
     const Deadline deadline((1 - kept_back) * seconds - since(begin), stop);
     try {
       train(level.settings, deadline.token());
-      done = &level;
     } catch (const Interrupted&) {
       if (stop.stop_requested()) throw;
       log.warning(fmt::format("the time is up before '{}' is done", level.name));
-      break;
+      run.settings = run.done ? run.settings : without_networks(level.settings, fewest_folds, false);
+      if (!run.done) run.settings.method = "pod_rbf";
+      train(run.settings, stop);  // what was made already is kept: this writes it again
+      return run;
     }
+    run.done = next;
+    run.settings = level.settings;
+    if (level.seconds > 0) run.pace = since(from) / level.seconds;
   }
-  if (done == &chosen.back()) return done->settings;
-  auto rest =
-      done != nullptr ? done->settings : without_networks(chosen.front().settings, fewest_folds, false);
-  if (done == nullptr) rest.method = "pod_rbf";
-  train(rest, stop);  // what was made already is kept: this writes it again
-  return rest;
+  return run;
 }
 
 }  // namespace elrom::study

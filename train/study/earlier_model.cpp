@@ -4,7 +4,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-
 namespace elrom::study {
 namespace {
 
@@ -51,8 +50,7 @@ std::vector<std::size_t> EarlierModel::known_rows(const std::string& field, cons
     if (i < info_.case_digests.size() && info_.case_digests[i] == now.case_digests[row]) rows.push_back(row);
   }
   const bool all_there = rows.size() == names.size() && rows.size() >= least_known;
-  const bool still_known =
-      static_cast<double>(now.cases.size()) <= growth * static_cast<double>(rows.size());
+  const bool still_known = static_cast<double>(now.cases.size()) <= growth * static_cast<double>(rows.size());
   return all_there && still_known ? rows : std::vector<std::size_t>();
 }
 
@@ -71,7 +69,8 @@ std::vector<LeftOut> EarlierModel::left_out(const std::string& field,
   for (const auto* method : candidates) {
     const auto* entry = entry_of(earlier, method->name());
     if (entry == nullptr || !(*entry)["nrmse"].is_number() || entry->value("weight", 0.0) > 0) continue;
-    const LeftOut own{method->name(), (*entry)["nrmse"].get<double>(), entry->value("cases", info_.cases.size())};
+    const LeftOut own{method->name(), (*entry)["nrmse"].get<double>(),
+                      entry->value("cases", info_.cases.size())};
     const bool still_known = static_cast<double>(n_cases) <= growth * static_cast<double>(own.n_cases);
     if (still_known && own.nrmse > (1 + far) * best) out.push_back(own);
   }

@@ -163,9 +163,9 @@ struct Study::Impl {
     if (known.empty()) return known;
     const auto all = math::all_rows(cases.n_cases());
     const auto& networks = methods.networks();
-    const double equal = networks::equal_bands(networks.fast_screen(data, known, context()),
-                                               networks.fast_screen(data, all, context()),
-                                               settings.bands.edges);
+    const double equal =
+        networks::equal_bands(networks.fast_screen(data, known, context()),
+                              networks.fast_screen(data, all, context()), settings.bands.edges);
     log.info(fmt::format("{}: {:.0f} % of columns keep their band; networks {}", data.info.name, 100 * equal,
                          equal < least_equal ? "begin from nothing" : "go on from the earlier ones"));
     if (equal < least_equal) known.clear();
