@@ -23,7 +23,8 @@ namespace elrom::study {
 struct BudgetLevel {
   std::string name;  ///< "kernel alone, 2 folds"
   Settings settings;
-  double seconds = 0;  ///< wall, as the cost model expects it
+  double seconds = 0;  ///< wall, as the cost model expects it; 0: not known, or next to nothing
+  std::string buys;    ///< over the level before
 };
 
 /// What the cost model knows of one study.
@@ -51,14 +52,14 @@ struct BudgetRun {
 };
 
 /// The level to run next: the dearest that fits into the time left, of those dearer than what is done; networks
-/// only after a model that stands. With nothing done at least the cheapest.
+/// only after a model that stands. Where none fits the next one, as long as it may: it is stopped in time, and a later run goes on from there.
+/// With nothing done the dearest that is sure to fit, which the first always is.
 /// @param seconds left @param run done and pace so far
 [[nodiscard]] std::optional<std::size_t> next_level(const std::vector<BudgetLevel>& levels, double seconds,
                                                     const BudgetRun& run);
 
 /// What was not run, what it would take and what it may buy, a sentence each; never empty.
-[[nodiscard]] std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const BudgetRun& run,
-                                                const CostModel& model);
+[[nodiscard]] std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const BudgetRun& run);
 
 /// Runs levels by `train`, each from where the last left the folder, as long as one fits. One that is not done
 /// when the time is up is stopped; the one before it is then the result, or where there is none POD + RBF, which
