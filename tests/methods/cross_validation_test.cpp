@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "elrom/base/error.hpp"
 #include "elrom/math/statistics.hpp"
@@ -27,6 +28,26 @@ TEST(LoadGroupedFolds, HoldEveryCaseOnce) {
   }
   std::sort(seen.begin(), seen.end());
   EXPECT_EQ(seen, math::all_rows(37));
+}
+
+TEST(JoinedFolds, ACaseJoinsItsNearestLoadAndTheOthersStay) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> loads{0.1, 0.2, 0.8, 0.9, 0.22, 0.84, unknown, unknown};
+
+  EXPECT_EQ(joined({{0, 1}, {2, 3}}, loads, std::vector<std::size_t>{4, 5}), (Folds{{0, 1, 4}, {2, 3, 5}}));
+  EXPECT_EQ(joined({{0, 3}, {1, 6}}, loads, std::vector<std::size_t>{7}), (Folds{{0, 3}, {1, 6, 7}}))
+      << "unknown loads are near each other";
+}
+
+TEST(JoinedFolds, OnlyAWarmStartKeepsThem) {
+  const std::vector<double> loads{0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+  const auto in_two = [&](std::span<const std::size_t> rows) {
+    return load_grouped_folds(loads, rows, 2, 1);
+  };
+  const WarmStart warm{.parent = "p", .model = nullptr, .known = {0, 1, 2, 4}};
+
+  EXPECT_EQ(folds_of(math::all_rows(6), loads, {}, in_two), (Folds{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(folds_of(math::all_rows(6), loads, {.warm = &warm}, in_two), (Folds{{0, 1}, {2, 3, 4, 5}}));
 }
 
 TEST(LoadGroupedFolds, KeepNeighbouringLoadsTogether) {

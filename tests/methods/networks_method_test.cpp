@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 
+#include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "support/random_network.hpp"
 #include "support/toy_furnace.hpp"
@@ -24,6 +25,9 @@ class RandomTrainer final : public networks::Trainer {
                                                const std::filesystem::path&) const override {
     n_train = problem.train_inputs.rows();
     n_validation = problem.validation_inputs.rows();
+    ++n_trained;
+    n_gone_on += problem.start.size() > 0 ? 1 : 0;
+    if (problem.start.size() > 0) start = problem.start;
     const auto n_in = static_cast<std::size_t>(problem.train_inputs.cols()),
                n_out = static_cast<std::size_t>(problem.train_targets.cols());
     networks::TrainingResult result;
@@ -33,6 +37,8 @@ class RandomTrainer final : public networks::Trainer {
     return result;
   }
   mutable std::atomic<Eigen::Index> n_train{0}, n_validation{0};
+  mutable std::atomic<int> n_trained{0}, n_gone_on{0};
+  mutable MatrixF start;  // the last, on one thread
 };
 
 class Networks : public ::testing::Test {
@@ -97,6 +103,46 @@ TEST_F(Networks, WithoutSymmetryThereAreNoImages) {
   });
   EXPECT_EQ(trainer->n_train, n_train);
   EXPECT_EQ(model->kind(), "networks");
+}
+
+/// Two bands at most, one build, on one thread.
+networks::Settings small_settings() {
+  networks::Settings settings;
+  settings.screen.method = "fast";
+  settings.bands.edges = {1e-9};
+  settings.search.trials = 4;
+  settings.search.confirm = 0;
+  settings.fit.builds = 1;
+  return settings;
+}
+
+TEST_F(Networks, AWarmStartGoesOnFromTheNetworkOfTheKnownCases) {
+  const NetworksMethod method(small_settings(), trainer);
+  const WarmStart warm{.parent = "p", .model = nullptr, .known = math::all_rows(16)};
+  const auto before = method.fit(data, warm.known, {});
+  EXPECT_EQ(trainer->n_gone_on, 0);
+  const auto& earlier = dynamic_cast<const model::BandedNetworks&>(*before);
+
+  (void)method.fit(data, math::all_rows(20), {.warm = &warm});
+
+  EXPECT_EQ(trainer->n_gone_on, 1);
+  EXPECT_EQ(trainer->start, networks::parameters_of(earlier.parts().submodels.front().builds.front()));
+}
+
+TEST_F(Networks, CrossValidationOfAWarmStartHasSeenNeitherFoldNorNewCases) {
+  const NetworksMethod method(small_settings(), trainer);
+  const WarmStart warm{.parent = "p", .model = nullptr, .known = math::all_rows(16)};
+  const auto known = load_grouped_folds(cases.loads, warm.known, 4);
+  const auto before = method.cross_predict(data, known, {});
+  auto changed = data;
+  changed.values.bottomRows(4) *= 100;  // of the new cases, which nothing may depend on
+
+  const auto after = method.cross_predict(
+      changed, joined(known, cases.loads, std::vector<std::size_t>{16, 17, 18, 19}), {.warm = &warm});
+
+  EXPECT_EQ(trainer->n_gone_on, 0);
+  EXPECT_EQ(after.topRows(16), before.topRows(16));
+  EXPECT_GT(after.bottomRows(4).cwiseAbs().rowwise().maxCoeff().minCoeff(), 0) << "and they are predicted";
 }
 
 }  // namespace

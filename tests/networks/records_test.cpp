@@ -54,6 +54,32 @@ TEST(Records, TargetsOfTheTrainingRecordsAreStandardisedColumnByColumn) {
   }
 }
 
+TEST(RecordSource, KnownCasesKeepTheRecordsThatTheyHadWithoutTheOthers) {
+  const auto cases = test::toy_cases(n_cases);
+  const auto data = test::toy_field(cases);
+  const std::vector<std::size_t> known{0, 1, 3, 4, 5, 7, 8, 10, 11, 13, 14, 16, 17, 18, 19};
+  const RecordRecipe recipe{.options = {.relevance = Relevance::gp}, .parts = {}, .seed = base::Seed(3)};
+  auto going_on = recipe;
+  going_on.known = known;
+  const RecordSource before(data, known, recipe), after(data, all_cases(), going_on);
+
+  EXPECT_EQ(after.get().inputs.factor, before.get().inputs.factor);
+  EXPECT_EQ(after.get().inputs.relevance, before.get().inputs.relevance);
+  EXPECT_EQ(after.get().outputs.deviation, before.get().outputs.deviation);
+  const auto& was = before.get().records;
+  const auto& is = after.get().records;
+  ASSERT_EQ(is.part.size(), n_cases * n_planes);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto first = static_cast<Eigen::Index>(i * n_planes),
+               now = static_cast<Eigen::Index>(known[i] * n_planes);
+    EXPECT_EQ(is.part[static_cast<std::size_t>(now)], was.part[static_cast<std::size_t>(first)]);
+    EXPECT_EQ(is.inputs.middleRows(now, 8), was.inputs.middleRows(first, 8));
+    EXPECT_EQ(is.targets.middleRows(now, 8), was.targets.middleRows(first, 8));
+  }
+  EXPECT_GT(std::ranges::count(is.part, Part::train), std::ranges::count(was.part, Part::train));
+  EXPECT_NE(after.key(), RecordSource(data, all_cases(), recipe).key());
+}
+
 TEST(Records, WhatDoesNotTrainDoesNotMoveTheScalers) {
   auto cases = test::toy_cases(n_cases);
   auto data = test::toy_field(cases);

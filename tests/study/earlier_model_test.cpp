@@ -10,6 +10,7 @@
 #include "elrom/study/study.hpp"
 #include "study_fixture.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/toy_furnace.hpp"
 
 namespace elrom::study {
 namespace {
@@ -115,6 +116,73 @@ TEST_F(EarlierModels, BeginningTwiceAtTheSameModelGivesTheSameBytesForAnyThreads
 
   EXPECT_EQ(bytes_with(3), one);
   EXPECT_NE(one, first);
+}
+
+/// Of a model of four cases: networks had a part in the contest for pressure alone.
+class KnownRows : public ::testing::Test {
+ protected:
+  KnownRows() { write("{}"); }
+  void write(const std::string& more) const {
+    const auto cases = study_cases_of_four();
+    model::Bundle bundle;
+    bundle.info = {.method = "auto",
+                   .fields = {},
+                   .schema = cases.schema,
+                   .cases = {"a", "b", "c", "d"},
+                   .case_digests = {"1", "2", "3", "4"},
+                   .provenance = {{"settings", "s"}},
+                   .settings = {}};
+    auto accuracy = nlohmann::json::parse(R"({"pressure": {"candidates": [{"name": "networks"}]},
+        "density": {"candidates": [{"name": "networks", "cases": 3}]},
+        "velocity": {"candidates": [{"name": "kernel"}]}})");
+    accuracy["pressure"].update(nlohmann::json::parse(more));
+    bundle.info.accuracy_json = accuracy.dump();
+    bundle.mesh = cases.mesh;
+    bundle.guard = model::Guard(cases.schema, cases.inputs, bundle.info.cases, cases.loads);
+    bundle.write(folder_ / "model.elrom");
+  }
+  [[nodiscard]] static field::CaseSet study_cases_of_four() { return test::toy_cases(4); }
+  [[nodiscard]] std::vector<std::size_t> rows(const PresentStudy& now,
+                                              const std::string& field = "pressure") const {
+    return EarlierModel(folder_ / "model.elrom").known_rows(field, now);
+  }
+  const PresentStudy now_{.cases = {"a", "new", "b", "c", "d"},
+                          .case_digests = {"1", "9", "2", "3", "4"},
+                          .settings_digest = "s"};
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(KnownRows, AreThoseOfTheEarlierCasesWhereNetworksTookPart) {
+  EXPECT_EQ(rows(now_), (std::vector<std::size_t>{0, 2, 3, 4}));
+  EXPECT_TRUE(rows(now_, "density").empty()) << "they were left out last time";
+  EXPECT_TRUE(rows(now_, "velocity").empty());
+  EXPECT_TRUE(rows(now_, "no such field").empty());
+}
+
+TEST_F(KnownRows, AreNoneOnceACaseHasLeftOrChangedOrSettingsHave) {
+  auto left = now_, changed = now_, other = now_;
+  left.cases[4] = "another";
+  changed.case_digests[4] = "5";
+  other.settings_digest = "t";
+
+  EXPECT_TRUE(rows(left).empty());
+  EXPECT_TRUE(rows(changed).empty());
+  EXPECT_TRUE(rows(other).empty());
+}
+
+TEST_F(KnownRows, AreNoneOnceTheCasesHaveGrownByMoreThanAQuarter) {
+  auto more = now_;
+  more.cases.push_back("newer");
+  more.case_digests.push_back("8");
+
+  EXPECT_TRUE(rows(more).empty());
+}
+
+TEST_F(KnownRows, AreStillThoseOfTheLastTrainingFromNothingAfterARetraining) {
+  write(R"({"known": ["a", "b", "c"]})");
+  EXPECT_TRUE(rows(now_).empty()) << "five are more than a quarter more than three";
+  write(R"({"known": ["d", "a", "b", "c"]})");
+  EXPECT_EQ(rows(now_), (std::vector<std::size_t>{0, 2, 3, 4}));
 }
 
 }  // namespace

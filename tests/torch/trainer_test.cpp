@@ -74,6 +74,23 @@ TEST(TorchTrainer, LearnsASmoothFunction) {
   EXPECT_FALSE(result.diverged);
 }
 
+TEST(TorchTrainer, GoesOnFromTheWeightsItIsGiven) {
+  auto problem = smooth_problem();
+  const auto trainer = make_torch_trainer();
+  const auto first = trainer->train(problem, usual, {150, 30}, base::Seed(1), nullptr, {});
+  problem.start = networks::parameters_of(first.network);
+  auto slow = usual;
+  slow.learning_rate = 1e-9;
+
+  const auto same = trainer->train(problem, slow, {1, 1}, base::Seed(2), nullptr, {});
+  const auto on = trainer->train(problem, usual, {150, 5}, base::Seed(2), nullptr, {});
+
+  EXPECT_NEAR(same.validation_mse, first.validation_mse, 1e-4 * first.validation_mse);
+  EXPECT_LT(on.epochs, first.epochs / 2);
+  EXPECT_LT(on.validation_mse, 1.5 * first.validation_mse);
+  EXPECT_NE(weights_of(on.network), weights_of(first.network)) << "an epoch at least";
+}
+
 TEST(TorchTrainer, EarlyStoppingRestoresTheBestWeights) {
   const auto problem = smooth_problem(20, 0.5F);  // few noisy records: it overfits soon
   Recorder recorder;

@@ -22,7 +22,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Which fold each case is in, in the order of `cases`.
-std::vector<std::size_t> folds_of(std::span<const std::size_t> cases, const Folds& folds) {
+std::vector<std::size_t> fold_of_each(std::span<const std::size_t> cases, const Folds& folds) {
   std::vector<std::size_t> found(cases.size());
   for (std::size_t k = 0; k < folds.size(); ++k) {
     for (const std::size_t row : folds[k])
@@ -134,7 +134,7 @@ class Contest {
   /// (n * n, n_columns), so that the Gram matrix of any set of columns is a sum.
   void sum_products(const std::vector<MatrixF>& errors) {
     const auto n = static_cast<Index>(errors.size()), n_columns = variation_.size();
-    const std::vector<std::size_t> fold_of = folds_of(cases_, folds_);
+    const std::vector<std::size_t> fold_of = fold_of_each(cases_, folds_);
     products_.assign(folds_.size(), MatrixD::Zero(n * n, n_columns));
     for (std::size_t i_case = 0; i_case < cases_.size(); ++i_case) {
       MatrixD& products = products_[fold_of[i_case]];
@@ -246,7 +246,10 @@ AutoFit fit_auto(const field::FieldData& data, std::span<const std::size_t> case
                  std::span<const Method* const> candidates, const AutoOptions& options,
                  const FitContext& context) {
   check(!candidates.empty(), "auto: at least one candidate");
-  const Folds folds = load_grouped_folds(data.cases->loads, cases, options.n_folds);
+  const auto& loads = data.cases->loads;
+  const Folds folds = folds_of(cases, loads, context, [&](std::span<const std::size_t> rows) {
+    return load_grouped_folds(loads, rows, options.n_folds);
+  });
   Contest contest(data, cases, candidates, folds);
   contest.run(context);
   AutoFit fit = contest.decide(options);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -63,6 +64,34 @@ Folds spread_folds(const field::CaseSet& cases, std::span<const std::size_t> row
   }
   for (auto& fold : folds) std::sort(fold.begin(), fold.end());
   return folds;
+}
+
+Folds joined(Folds folds, std::span<const double> loads, std::span<const std::size_t> more) {
+  const auto known = folds;
+  for (const std::size_t row : more) {
+    const double load = place_of(loads[row]);
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      for (const std::size_t other : known[k]) {
+        const double place = place_of(loads[other]);
+        const double distance = place == load ? 0 : std::abs(place - load);
+        if (distance < least) nearest = k, least = distance;
+      }
+    }
+    folds[nearest].push_back(row);
+  }
+  for (auto& fold : folds) std::ranges::sort(fold);
+  return folds;
+}
+
+Folds folds_of(std::span<const std::size_t> rows, std::span<const double> loads, const FitContext& context,
+               const std::function<Folds(std::span<const std::size_t>)>& make) {
+  const auto known = context.warm == nullptr ? std::vector<std::size_t>() : context.warm->known_among(rows);
+  if (known.empty()) return make(rows);
+  std::vector<std::size_t> more;
+  std::ranges::set_difference(rows, known, std::back_inserter(more));
+  return joined(make(known), loads, more);
 }
 
 std::vector<std::size_t> rows_without(const Folds& folds, std::size_t left_out) {

@@ -1,6 +1,8 @@
 #include "elrom/methods/networks_method.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <iterator>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
@@ -18,6 +20,21 @@ std::vector<std::size_t> rows_of(const Folds& folds) {
   std::vector<std::size_t> rows;
   for (const auto& fold : folds) rows.insert(rows.end(), fold.begin(), fold.end());
   std::ranges::sort(rows);
+  return rows;
+}
+
+/// Where each of `some` stands in `all`; both ascending.
+std::vector<std::size_t> places_among(std::span<const std::size_t> all, std::span<const std::size_t> some) {
+  std::vector<std::size_t> places;
+  for (const auto row : some)
+    places.push_back(static_cast<std::size_t>(std::ranges::lower_bound(all, row) - all.begin()));
+  return places;
+}
+
+/// Of two that ascend.
+std::vector<std::size_t> common(std::span<const std::size_t> some, std::span<const std::size_t> others) {
+  std::vector<std::size_t> rows;
+  std::ranges::set_intersection(some, others, std::back_inserter(rows));
   return rows;
 }
 
@@ -72,12 +89,21 @@ networks::RecordSource NetworksMethod::screened_records(const field::FieldData& 
   return {data, cases, {.options = own.screened, .parts = own.parts, .seed = context.seed}};
 }
 
-networks::RecordSource NetworksMethod::records(const field::FieldData& data,
-                                               std::span<const std::size_t> cases,
-                                               const FitContext& context) const {
-  const auto own = settings_of(data);
-  return {data, cases, {.options = own.records, .parts = own.parts, .seed = context.seed}};
-}
+struct NetworksMethod::Records {
+  Records(const field::FieldData& data, std::span<const std::size_t> cases,
+          const networks::FieldSettings& settings, const FitContext& context)
+      : known_cases(context.warm == nullptr ? std::vector<std::size_t>() : context.warm->known_among(cases)),
+        known(data, known_cases, {settings.records, settings.parts, context.seed}),
+        all(data, cases, {settings.records, settings.parts, context.seed, places_among(cases, known_cases)}),
+        planned_cases(known_cases.empty() ? std::vector(cases.begin(), cases.end()) : known_cases) {}
+
+  [[nodiscard]] bool go_on() const { return !known_cases.empty(); }
+  [[nodiscard]] const networks::RecordSource& planned() const { return go_on() ? known : all; }
+
+  std::vector<std::size_t> known_cases;
+  networks::RecordSource known, all;
+  std::vector<std::size_t> planned_cases;
+};
 
 networks::ScreeningResult NetworksMethod::fast_screen(const field::FieldData& data,
                                                       std::span<const std::size_t> cases,
@@ -105,7 +131,8 @@ networks::ScreeningResult NetworksMethod::screen_field(const field::FieldData& d
 
 NetworkPlan NetworksMethod::plan(const field::FieldData& data, std::span<const std::size_t> cases,
                                  const FitContext& context) const {
-  return plan(data, cases, records(data, cases, context), context);
+  const Records records(data, cases, settings_of(data), context);
+  return plan(data, records.planned_cases, records.planned(), context);
 }
 
 NetworkPlan NetworksMethod::plan(const field::FieldData& data, std::span<const std::size_t> cases,
@@ -138,8 +165,17 @@ NetworkPlan NetworksMethod::plan(const field::FieldData& data, std::span<const s
   return plan;
 }
 
+networks::TrainingResult NetworksMethod::train(const networks::BuildStage& stage,
+                                               const FitContext& context) const {
+  auto running = stage_context(context);
+  running.checkpoint = cache_->path("checkpoint", stage.name, stage, ".part");
+  const auto file = cache_->get(stage.name, stage, running);
+  if (!running.checkpoint.empty()) std::filesystem::remove(running.checkpoint);
+  return networks::training_of(file);
+}
+
 std::vector<model::Submodel> NetworksMethod::build(const field::FieldData& data, const NetworkPlan& plan,
-                                                   const networks::RecordSource& records, int n_builds,
+                                                   const Records& records, int n_builds,
                                                    const FitContext& context, int n_threads) const {
   const auto& field = data.info.name;
   const auto own = settings_of(data);
@@ -151,19 +187,21 @@ std::vector<model::Submodel> NetworksMethod::build(const field::FieldData& data,
       [&](std::size_t unit, int) {
         const std::size_t i_band = unit / n, i_build = unit % n;
         const auto& band = plan.bands[i_band];
-        const networks::BuildStage stage{
+        networks::BuildStage stage{
             .name = field + "-" + band.name + "-" + std::to_string(i_build),
-            .records = &records,
+            .records = &records.planned(),
             .band = band,
             .hyperparameters = plan.hyperparameters[i_band],
             .budget = {own.fit.max_epochs, own.fit.patience},
             .trainer = trainer_.get(),
             .seed = context.seed.derive("fit").derive(field).derive(band.name).derive(i_build)};
-        auto running = stage_context(context);
-        running.checkpoint = cache_->path("checkpoint", stage.name, stage, ".part");
-        const auto file = cache_->get(stage.name, stage, running);
-        if (!running.checkpoint.empty()) std::filesystem::remove(running.checkpoint);
-        results[i_band][i_build] = networks::training_of(file);
+        auto result = train(stage, context);
+        if (records.go_on()) {
+          stage.records = &records.all;
+          stage.start = networks::parameters_of(result.network);
+          result = train(stage, context);
+        }
+        results[i_band][i_build] = std::move(result);
       },
       context.stop);
   std::vector<model::Submodel> submodels;
@@ -196,28 +234,33 @@ std::unique_ptr<model::FieldModel> NetworksMethod::assemble(const field::FieldDa
 std::unique_ptr<model::FieldModel> NetworksMethod::fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const {
-  const auto source = records(data, cases, context);
-  const auto found = plan(data, cases, source, context);
-  auto submodels = build(data, found, source, settings_of(data).fit.builds, context, context.n_trainings());
-  return assemble(data, source.get(), std::move(submodels));
+  const auto own = settings_of(data);
+  const Records records(data, cases, own, context);
+  const auto found = plan(data, records.planned_cases, records.planned(), context);
+  auto submodels = build(data, found, records, own.fit.builds, context, context.n_trainings());
+  return assemble(data, records.all.get(), std::move(submodels));
 }
 
 MatrixF NetworksMethod::cross_predict(const field::FieldData& data, const Folds& folds,
                                       const FitContext& context) const {
   const auto rows = rows_of(folds);
-  const auto found = plan(data, rows, context);
+  auto known = context.warm == nullptr ? rows : context.warm->known_among(rows);
+  if (known.empty()) known = rows;
+  auto cold = context;
+  cold.warm = nullptr;
+  const auto found = plan(data, known, cold);
   MatrixF predicted = MatrixF::Zero(data.values.rows(), data.values.cols());
   std::atomic<std::int64_t> done{0};
   const auto total = static_cast<std::int64_t>(folds.size());
-  const int n_builds = std::min(settings_of(data).fit.builds, cross_builds);
+  const auto own = settings_of(data);
+  const int n_builds = std::min(own.fit.builds, cross_builds);
   const int within_fold = std::max(1, context.n_trainings() / static_cast<int>(folds.size()));
   base::parallel_for(
       folds.size(), context.n_trainings(),
       [&](std::size_t i_fold, int) {
-        const auto rest = rows_without(folds, i_fold);
-        const auto source = records(data, rest, context);
-        auto submodels = build(data, found, source, n_builds, context, within_fold);
-        const auto model = assemble(data, source.get(), std::move(submodels));
+        const Records records(data, common(known, rows_without(folds, i_fold)), own, cold);
+        auto submodels = build(data, found, records, n_builds, cold, within_fold);
+        const auto model = assemble(data, records.all.get(), std::move(submodels));
         model::Workspace workspace;
         for (const auto row : folds[i_fold]) {
           const auto i = static_cast<Eigen::Index>(row);

@@ -1,5 +1,8 @@
 #include "elrom/methods/warm_start.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "elrom/model/composite_models.hpp"
 #include "elrom/model/pod_model.hpp"
 
@@ -17,6 +20,12 @@ const model::SmootherCoefficients* smoother_of(const model::FieldModel* model) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> WarmStart::known_among(std::span<const std::size_t> rows) const {
+  std::vector<std::size_t> both;
+  std::ranges::set_intersection(known, rows, std::back_inserter(both));
+  return both;
+}
 
 const model::SmootherCoefficients* WarmStart::smoother() const { return smoother_of(model.get()); }
 

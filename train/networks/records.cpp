@@ -17,10 +17,12 @@ constexpr double least_relevance = 0.1;
 constexpr Eigen::Index n_components = 10;
 
 // Numbers of the cases that have a training record.
-std::vector<std::size_t> training_cases(const field::FieldRows& data, const std::vector<Part>& part) {
+std::vector<std::size_t> training_cases(const field::FieldRows& data, const std::vector<Part>& part,
+                                        std::span<const std::size_t> among) {
   const std::size_t n_planes = data.n_planes();
   std::vector<std::size_t> cases;
   for (std::size_t i = 0; i < data.n_cases(); ++i) {
+    if (!among.empty() && !std::ranges::binary_search(among, i)) continue;
     const auto first = part.begin() + static_cast<std::ptrdiff_t>(i * n_planes);
     if (std::count(first, first + static_cast<std::ptrdiff_t>(n_planes), Part::train) > 0) cases.push_back(i);
   }
@@ -204,13 +206,35 @@ std::vector<double> gp_relevance(const MatrixD& inputs, const Eigen::MatrixXd& c
   return relative_relevance(std::move(relevance));
 }
 
+/// Known cases are dealt out as if the others were not there, then the others among themselves.
+std::vector<Part> parts_of(const field::FieldRows& data, const RecordRecipe& recipe) {
+  const auto n_planes = data.n_planes();
+  std::vector<Part> parts(data.n_cases() * n_planes);
+  const auto deal = [&](bool known) {
+    std::vector<std::size_t> cases;
+    std::vector<double> loads;
+    for (std::size_t i = 0; i < data.n_cases(); ++i) {
+      if ((recipe.known.empty() || std::ranges::binary_search(recipe.known, i)) != known) continue;
+      cases.push_back(i);
+      loads.push_back(data.load(i));
+    }
+    const auto dealt = split_records(loads, n_planes, recipe.parts, recipe.seed);
+    for (std::size_t k = 0; k < cases.size(); ++k)
+      std::copy_n(dealt.begin() + static_cast<std::ptrdiff_t>(k * n_planes), n_planes,
+                  parts.begin() + static_cast<std::ptrdiff_t>(cases[k] * n_planes));
+  };
+  deal(true);
+  deal(false);
+  return parts;
+}
+
 }  // namespace
 
 RecordSet make_records(const field::FieldRows& data, const std::vector<Part>& part,
-                       const RecordOptions& options) {
+                       const RecordOptions& options, std::span<const std::size_t> scaled_by) {
   const auto n_planes = data.n_planes();
   check(part.size() == data.n_cases() * n_planes, "records: a part for every record");
-  const auto building = training_cases(data, part);
+  const auto building = training_cases(data, part, scaled_by);
   RecordSet set;
   set.transform = fit_transform(data, building, options.transform);
   {
@@ -239,12 +263,8 @@ RecordSource::RecordSource(const field::FieldData& data, std::span<const std::si
       key_(base::digest_of_members(data_, recipe_)) {}
 
 const RecordSet& RecordSource::get() const {
-  std::call_once(once_, [&] {
-    std::vector<double> loads;
-    for (std::size_t i = 0; i < data_.n_cases(); ++i) loads.push_back(data_.load(i));
-    set_ = make_records(data_, split_records(loads, data_.n_planes(), recipe_.parts, recipe_.seed),
-                        recipe_.options);
-  });
+  std::call_once(
+      once_, [&] { set_ = make_records(data_, parts_of(data_, recipe_), recipe_.options, recipe_.known); });
   return set_;
 }
 

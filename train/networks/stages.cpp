@@ -89,8 +89,10 @@ io::TensorFile SearchStage::compute(const StageContext& context) const {
 }
 
 io::TensorFile BuildStage::compute(const StageContext& context) const {
-  const auto trained = trainer->train(make_problem(records->get().records, band), hyperparameters, budget,
-                                      seed, nullptr, context.stop, context.checkpoint);
+  auto problem = make_problem(records->get().records, band);
+  problem.start = start;
+  const auto trained =
+      trainer->train(problem, hyperparameters, budget, seed, nullptr, context.stop, context.checkpoint);
   tell_divergence(trained, name, *context.log);
   return to_file(trained);
 }

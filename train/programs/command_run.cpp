@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <limits>
 
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
+#include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
@@ -38,19 +40,24 @@ int train_within(double seconds, const StudyArguments& arguments, bool with_peer
   const auto begin = std::chrono::steady_clock::now();
   const auto model = study::cost_model(arguments.folder, settings, log);
   const auto levels = study::budget_levels(settings, model);
-  const auto chosen = study::levels_within(levels, seconds);
-  for (const auto& level : chosen)
-    fmt::print("planned: {} (about {})\n", level.name, base::duration(level.seconds));
-  int status = 0;
+  const auto resolved = arguments.folder / "resolved.toml";
+  int status = std::numeric_limits<int>::max();
   const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  (void)study::run_within(seconds - taken, chosen, log, base::interrupt_token(),
-                          [&](const study::Settings& own, const std::stop_token& stop) {
-                            status = train(arguments, with_peers, own, tools, log, stop);
-                          });
-  for (const auto& sentence : study::left_out(levels, chosen, model)) fmt::print("{}\n", sentence);
+  const auto spent = study::run_within(
+      seconds - taken, levels, log, base::interrupt_token(),
+      [&](const study::Settings& own, const std::stop_token& stop) {
+        const auto before = std::filesystem::exists(resolved) ? base::read_text(resolved) : "";
+        try {
+          status = std::min(status, train(arguments, with_peers, own, tools, log, stop));
+        } catch (const Interrupted&) {
+          if (!before.empty()) base::write_text(resolved, before);  // those of the model that stands
+          throw;
+        }
+      });
+  for (const auto& sentence : study::left_out(levels, spent)) fmt::print("{}\n", sentence);
   fmt::print("{} of {}; the settings used are in {}\n",
              base::duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()),
-             base::duration(seconds), (arguments.folder / "resolved.toml").string());
+             base::duration(seconds), resolved.string());
   return status;
 }
 

@@ -30,6 +30,8 @@ constexpr double peers_beside =
     1.25;  // a run with the simple peers, as a multiple of one with the kernel alone
 constexpr double standard_networks = 5;  // effort "standard" as a multiple of "quick", of networks alone
 constexpr double margin = 0.85;          // share of the time that is planned with: other work comes and goes
+constexpr double hope = 2;    // of the cheapest that is left: what it makes is kept for a later run
+constexpr double sure = 0.5;  // of a level that nothing stands in for when it is not done
 
 constexpr double for_a_simple_peer = 0.07;  // share of the time kept back while there is no model at all
 
@@ -120,82 +122,90 @@ CostModel cost_model(const std::filesystem::path& folder, const Settings& settin
 }
 
 std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel& model) {
-  const auto level = [&](const std::string& name, int folds, bool with_peers) {
+  if (settings.method != "auto") return {{settings.method + " as asked", settings, 0, "what was asked for"}};
+  auto simple = without_networks(settings, fewest_folds, false);
+  simple.method = "pod_rbf";
+  std::vector<BudgetLevel> levels{{"POD + RBF", simple, 0, "a model"}};
+  const auto add = [&](const std::string& name, int folds, bool with_peers, const std::string& buys) {
     const auto own = without_networks(settings, folds, with_peers);
-    return BudgetLevel{fmt::format("{}, {} folds", name, own.peers.folds), own,
-                       seconds_without_networks(model, own.peers.folds, with_peers)};
+    levels.push_back({fmt::format("{}, {} folds", name, own.peers.folds), own,
+                      seconds_without_networks(model, own.peers.folds, with_peers), buys});
   };
-  if (settings.method != "auto") return {{settings.method + " as asked", settings, 0}};
-  std::vector<BudgetLevel> levels{level("kernel alone", fewest_folds, false),
-                                  level("kernel alone", some_folds, false),
-                                  level("kernel and simple peers", some_folds, true),
-                                  level("kernel and simple peers", settings.peers.folds, true)};
+  add("kernel alone", fewest_folds, false, "a tenth off the error of POD + RBF on the shipped cases");
+  add("kernel alone", some_folds, false, "intervals and errors from models that miss fewer cases");
+  add("kernel and simple peers", some_folds, true,
+      "a peer that beats the kernel on some field would be found");
+  add("kernel and simple peers", settings.peers.folds, true,
+      "intervals and errors from models that miss fewer cases");
   if (!settings.peers.networks) return levels;
-  const double base = levels.back().seconds;
-  auto with = settings;
-  levels.push_back(
-      {fmt::format("networks too, effort {}", settings.effort), with,
-       base * (settings.effort == "quick" ? model.networks : 1 + standard_networks * (model.networks - 1))});
+  const double multiple =
+      settings.effort == "quick" ? model.networks : 1 + standard_networks * (model.networks - 1);
+  levels.push_back({fmt::format("networks too, effort {}", settings.effort), settings,
+                    levels.back().seconds * multiple,
+                    model.networks_had_no_part
+                        ? "they had no part in the present model, which tried them: expect nothing of it"
+                        : "on the shipped cases they cost several times the rest and bought nothing"});
   return levels;
 }
 
-std::vector<BudgetLevel> levels_within(const std::vector<BudgetLevel>& levels, double seconds) {
-  std::vector<BudgetLevel> chosen;
-  double left = margin * seconds;
-  for (const auto& level : levels) {
-    if (level.settings.peers.networks && level.settings.method == "auto") {
-      if (!chosen.empty() && level.seconds <= left - chosen.back().seconds) chosen.push_back(level);
-    } else if (chosen.empty() || level.seconds <= left) {
-      chosen.assign(1, level);
-    }
+std::optional<std::size_t> next_level(const std::vector<BudgetLevel>& levels, double seconds,
+                                      const BudgetRun& run) {
+  const double share = run.done ? margin : sure;
+  std::optional<std::size_t> next;
+  for (std::size_t i = run.done ? *run.done + 1 : 0; i < levels.size(); ++i) {
+    const bool needs_a_model = levels[i].settings.method == "auto" && levels[i].settings.peers.networks;
+    if (needs_a_model && (!run.done || next)) continue;
+    if (levels[i].seconds * run.pace <= share * seconds) next = i;
   }
-  return chosen;
+  if (next || !run.done || *run.done + 1 == levels.size()) return next;
+  const auto cheapest = *run.done + 1;
+  return levels[cheapest].seconds * run.pace <= hope * seconds ? std::optional(cheapest) : std::nullopt;
 }
 
-std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const std::vector<BudgetLevel>& run,
-                                  const CostModel& model) {
+std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const BudgetRun& run) {
   std::vector<std::string> words;
-  for (const auto& level : levels) {
-    if (std::ranges::find(run, level.name, &BudgetLevel::name) != run.end()) continue;
-    if (!run.empty() && level.seconds <= run.front().seconds) continue;
-    auto text = fmt::format("left out: {} (about {})", level.name, base::duration(level.seconds));
-    if (level.settings.peers.networks)
-      text += model.networks_had_no_part
-                  ? "; they had no part in the present model, which tried them: expect nothing of it"
-                  : "; on the shipped cases they cost several times the rest and bought nothing";
-    else
-      text += level.settings.peers.methods.empty()
-                  ? "; intervals and errors from models that miss fewer cases"
-                  : "; a peer that beats the kernel on some field would be found";
-    words.push_back(text);
+  for (std::size_t i = run.done ? *run.done + 1 : 0; i < levels.size(); ++i) {
+    const auto& level = levels[i];
+    const auto time = level.seconds > 0 ? " (about " + base::duration(level.seconds * run.pace) + ")" : "";
+    words.push_back(fmt::format("left out: {}{}; {}", level.name, time, level.buys));
   }
+  const auto& last = levels.back().settings;
+  const bool can_search = last.peers.networks && last.effort != "thorough";
+  if (words.empty())
+    words.push_back(fmt::format("nothing was left out at effort {}: more time buys nothing{}; more cases do",
+                                last.effort,
+                                can_search ? " but a longer search for networks (a higher effort)" : ""));
   return words;
 }
 
-Settings run_within(double seconds, const std::vector<BudgetLevel>& chosen, Log& log,
-                    const std::stop_token& stop,
-                    const std::function<void(const Settings&, std::stop_token)>& train) {
-  check(!chosen.empty(), "run_within: a level");
+BudgetRun run_within(double seconds, const std::vector<BudgetLevel>& levels, Log& log,
+                     const std::stop_token& stop,
+                     const std::function<void(const Settings&, std::stop_token)>& train) {
+  check(!levels.empty(), "run_within: a level");
   const auto begin = Clock::now();
-  const BudgetLevel* done = nullptr;
-  for (const auto& level : chosen) {
-    const double kept_back = done == nullptr ? for_a_simple_peer : 0;
+  BudgetRun run;
+  while (const auto next = next_level(levels, seconds - since(begin), run)) {
+    const auto& level = levels[*next];
+    log.info(fmt::format("planned: {} (about {})", level.name, base::duration(level.seconds * run.pace)));
+    const double kept_back = run.done ? 0 : for_a_simple_peer;
+    const auto from = Clock::now();
     const Deadline deadline((1 - kept_back) * seconds - since(begin), stop);
     try {
       train(level.settings, deadline.token());
-      done = &level;
     } catch (const Interrupted&) {
       if (stop.stop_requested()) throw;
       log.warning(fmt::format("the time is up before '{}' is done", level.name));
-      break;
+      if (run.done) return run;
+      run.settings = without_networks(level.settings, fewest_folds, false);
+      run.settings.method = "pod_rbf";
+      train(run.settings, stop);
+      return run;
     }
+    run.done = next;
+    run.settings = level.settings;
+    if (level.seconds > 0) run.pace = since(from) / level.seconds;
   }
-  if (done == &chosen.back()) return done->settings;
-  auto rest =
-      done != nullptr ? done->settings : without_networks(chosen.front().settings, fewest_folds, false);
-  if (done == nullptr) rest.method = "pod_rbf";
-  train(rest, stop);  // what was made already is kept: this writes it again
-  return rest;
+  return run;
 }
 
 }  // namespace elrom::study

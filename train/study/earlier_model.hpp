@@ -9,6 +9,7 @@
 
 #include "elrom/base/log.hpp"
 #include "elrom/methods/method.hpp"
+#include "elrom/model/bundle.hpp"
 
 namespace elrom::study {
 
@@ -19,6 +20,12 @@ struct LeftOut {
   std::size_t n_cases = 0;  ///< that it was fitted with then
 };
 
+/// What an earlier model's study is compared with.
+struct PresentStudy {
+  std::vector<std::string> cases, case_digests;
+  std::string settings_digest;  ///< of all that the model's candidates depend on beside the cases
+};
+
 class EarlierModel {
  public:
   /// @throws InputError when the bundle cannot be read
@@ -26,6 +33,11 @@ class EarlierModel {
 
   /// Nothing is known of a field that the bundle lacks.
   [[nodiscard]] methods::WarmStart warm_start(const std::string& field) const;
+
+  /// Rows of the present cases that a field's networks go on from (WarmStart::known): those that they were last
+  /// planned and trained from nothing with. Empty where networks had no part in the contest, where one of those
+  /// cases has left or changed, where settings have, or where there are more than `growth` times as many by now.
+  [[nodiscard]] std::vector<std::size_t> known_rows(const std::string& field, const PresentStudy& now) const;
 
   /// Candidates of "auto" that stay out: no part of the earlier model, and their cross-validated error was
   /// more than `far` above the winner's, with at least 1 / `growth` of the present cases.
@@ -38,8 +50,8 @@ class EarlierModel {
   static constexpr double far = 0.02, growth = 1.25;
 
  private:
-  std::string digest_, accuracy_;
-  std::size_t n_cases_ = 0;
+  std::string digest_;
+  model::BundleInfo info_;
   std::map<std::string, std::shared_ptr<const model::FieldModel>> models_;
 };
 

@@ -50,7 +50,10 @@ methods::AutoFit fit_alone(const ModelStage& stage, const methods::Method& metho
   methods::AutoFit fit;
   fit.nrmse = fit.nrmse_by_band = NAN;
   if (stage.n_folds > 0) {
-    const auto folds = methods::load_grouped_folds(data.cases->loads, rows, stage.n_folds);
+    const auto& loads = data.cases->loads;
+    const auto folds = methods::folds_of(rows, loads, context, [&](std::span<const std::size_t> some) {
+      return methods::load_grouped_folds(loads, some, stage.n_folds);
+    });
     fit.nrmse =
         methods::cross_validated_nrmse(data, rows, data.values - method.cross_predict(data, folds, context));
   }
@@ -66,7 +69,10 @@ MatrixF residuals_of_new_cases(const ModelStage& stage, const std::vector<const 
                                const methods::AutoFit& fit, const std::vector<std::size_t>& rows,
                                const methods::FitContext& context) {
   const auto& data = *stage.data;
-  const auto folds = methods::spread_folds(*data.cases, rows, 2 * stage.n_folds);
+  const auto folds =
+      methods::folds_of(rows, data.cases->loads, context, [&](std::span<const std::size_t> some) {
+        return methods::spread_folds(*data.cases, some, 2 * stage.n_folds);
+      });
   MatrixF residuals = data.values;
   const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);
   for (std::size_t i = 0; i < methods.size(); ++i) {
@@ -105,11 +111,13 @@ Json accuracy_of(const ModelStage& stage, const methods::AutoFit& fit) {
   for (const auto& out : stage.left_out)
     candidates.push_back(
         {{"name", out.name}, {"nrmse", finite_or_null(out.nrmse)}, {"weight", 0.0}, {"cases", out.n_cases}});
-  return {{"method", stage.name},
-          {"kind", fit.model->kind()},
-          {"nrmse", finite_or_null(fit.nrmse)},
-          {"nrmse_by_band", finite_or_null(fit.nrmse_by_band)},
-          {"candidates", candidates}};
+  Json accuracy{{"method", stage.name},
+                {"kind", fit.model->kind()},
+                {"nrmse", finite_or_null(fit.nrmse)},
+                {"nrmse_by_band", finite_or_null(fit.nrmse_by_band)},
+                {"candidates", candidates}};
+  for (const auto row : stage.warm.known) accuracy["known"].push_back(stage.data->cases->names[row]);
+  return accuracy;
 }
 
 }  // namespace

@@ -104,7 +104,6 @@ RetrainReport retrain(const std::filesystem::path& folder, const Settings& setti
       report.promotion.verdict =
           judge(current, current, study.gate_cases(), settings.gate, settings.n_threads());
     } else {
-      study.reuse_plans_of(earlier.cases);
       study.begin_at(present);
       study.fit();
       report.promotion = study.promotion();

@@ -155,18 +155,21 @@ struct Study::Impl {
     return outcomes;
   }
 
-  // The earlier cases' screening and search are in the cache; the fast screen tells whether they still hold.
-  void reuse_plan(const field::FieldData& data) {
+  /// What is known of the earlier cases' networks is in the cache; the fast screen tells whether it holds.
+  std::vector<std::size_t> known_rows(const field::FieldData& data) {
+    auto known = earlier->known_rows(data.info.name, {.cases = cases.names,
+                                                      .case_digests = lineage().case_digests,
+                                                      .settings_digest = settings_digest(settings.method)});
+    if (known.empty()) return known;
     const auto all = math::all_rows(cases.n_cases());
-    auto& networks = methods.networks();
-    networks.forget_plan(data.info.name);
+    const auto& networks = methods.networks();
     const double equal =
-        networks::equal_bands(networks.fast_screen(data, earlier_rows, context()),
+        networks::equal_bands(networks.fast_screen(data, known, context()),
                               networks.fast_screen(data, all, context()), settings.bands.edges);
-    log.info(fmt::format("{}: {:.0f} % of columns keep their band{}", data.info.name, 100 * equal,
-                         equal < least_equal ? "; screened and searched again" : ""));
-    if (equal >= least_equal)
-      networks.keep_plan(data.info.name, networks.plan(data, earlier_rows, context()));
+    log.info(fmt::format("{}: {:.0f} % of columns keep their band; networks {}", data.info.name, 100 * equal,
+                         equal < least_equal ? "begin from nothing" : "go on from the earlier ones"));
+    if (equal < least_equal) known.clear();
+    return known;
   }
 
   std::vector<LeftOut> left_out_of(const std::string& name, const field::FieldData& data) {
@@ -184,7 +187,8 @@ struct Study::Impl {
   FieldStage fit_one(const std::string& name, field::FieldData& data, bool cross_validate) {
     const auto left_out = left_out_of(name, data);
     const bool networks_out = std::ranges::find(left_out, "networks", &LeftOut::name) != left_out.end();
-    if (earlier_rows.size() > 1 && methods.trains_networks(name) && !networks_out) reuse_plan(data);
+    auto warm = earlier ? earlier->warm_start(data.info.name) : methods::WarmStart();
+    if (earlier && methods.trains_networks(name) && !networks_out) warm.known = known_rows(data);
     data.cases = methods.is_peer(name) ? &plain_cases : &cases;
     const FieldStageRequest request{
         .name = name,
@@ -192,7 +196,7 @@ struct Study::Impl {
         .data = data,
         .band_edges = settings.bands.edges,
         .n_folds = cross_validate ? static_cast<std::size_t>(settings.peers.folds) : 0,
-        .warm = earlier ? earlier->warm_start(data.info.name) : methods::WarmStart(),
+        .warm = warm,
         .left_out = left_out};
     auto stage = fit_field(request, cache, context());
     data.cases = &cases;
@@ -216,7 +220,7 @@ struct Study::Impl {
                            base::rounded(main.nrmse(), 3)));
     });
     if (model_path.empty())
-      promote(stages.at(settings.method), with_peers ? "run" : retraining ? "retrain" : "fit");
+      promote(stages.at(settings.method), with_peers ? "run" : earlier ? "retrain" : "fit");
     else
       write_study_bundle(model_path, bundle_of(settings.method), lineage(), stages.at(settings.method));
     for (const auto& [name, of_method] : stages)
@@ -331,9 +335,7 @@ struct Study::Impl {
   field::SnapshotStore store;
   HeldOut rows;
   Promotion promotion;
-  bool retraining = false;
-  std::vector<std::size_t> earlier_rows;  // of `cases`; retraining only, as is `earlier`
-  std::optional<EarlierModel> earlier;
+  std::optional<EarlierModel> earlier;  // retraining only
   field::CaseSet cases, plain_cases;
   std::vector<field::FieldInfo> fields;
   io::StageCache cache;
@@ -371,14 +373,5 @@ bool Study::is_of_this_study(const model::BundleInfo& bundle) const {
 }
 
 void Study::begin_at(const std::filesystem::path& bundle) { impl_->earlier.emplace(bundle); }
-
-void Study::reuse_plans_of(const std::vector<std::string>& earlier_cases) {
-  impl_->retraining = true;
-  impl_->earlier_rows.clear();
-  for (std::size_t i = 0; i < impl_->cases.n_cases(); ++i) {
-    const bool earlier = std::ranges::find(earlier_cases, impl_->cases.names[i]) != earlier_cases.end();
-    if (earlier) impl_->earlier_rows.push_back(i);
-  }
-}
 
 }  // namespace elrom::study

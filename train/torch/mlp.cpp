@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "elrom/base/error.hpp"
+
 namespace elrom::torch {
 namespace {
 
@@ -47,6 +49,12 @@ void Mlp::initialise(base::Seed seed) {
       *value++ = static_cast<float>(random.uniform(-bound, bound));
   }
   parameters_.copy_(values);
+}
+
+void Mlp::begin_at(std::span<const float> parameters) {
+  const auto n = static_cast<std::int64_t>(parameters.size());
+  check(n == parameters_.numel(), "first weights of a network of another shape");
+  parameters_.copy_(::torch::from_blob(const_cast<float*>(parameters.data()), {n}, ::torch::kFloat32));
 }
 
 Pass Mlp::make_pass(std::int64_t n_rows, bool weighted, bool training, bool dropout) const {

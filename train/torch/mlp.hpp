@@ -6,6 +6,7 @@
 #include <torch/types.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "elrom/base/random.hpp"
@@ -42,6 +43,8 @@ class Mlp {
   /// Uniform in +-1 / sqrt(n_in of the layer), weights and biases
   /// alike (LibTorch's own default for linear layers).
   void initialise(base::Seed seed);
+  /// @param parameters in their order, (number of parameters())
+  void begin_at(std::span<const float> parameters);
   [[nodiscard]] ::torch::Tensor& parameters() { return parameters_; }
   [[nodiscard]] ::torch::Tensor& gradient() { return gradient_; }
   [[nodiscard]] const std::vector<std::int64_t>& widths() const { return widths_; }

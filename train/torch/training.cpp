@@ -40,6 +40,7 @@ Training::Training(const networks::TrainingProblem& problem, const networks::Hyp
                    base::Seed seed, Place place)
     : hyperparameters_(hyperparameters),
       seed_(seed),
+      start_(problem.start),
       own_loops_(place.own_loops),
       train_(problem.train_inputs, problem.train_targets, problem.train_weights, place),
       validation_(problem.validation_inputs, problem.validation_targets, problem.validation_weights, place),
@@ -57,7 +58,10 @@ Training::Training(const networks::TrainingProblem& problem, const networks::Hyp
 }
 
 void Training::restart(double learning_rate) {
-  mlp_.initialise(seed_.derive("weights"));
+  if (start_.size() == 0)
+    mlp_.initialise(seed_.derive("weights"));
+  else
+    mlp_.begin_at(std::span(start_.data(), static_cast<std::size_t>(start_.size())));
   best_.copy_(mlp_.parameters());
   adam_.reset();
   const double worst = std::numeric_limits<double>::max();

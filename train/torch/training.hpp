@@ -31,7 +31,7 @@ class Training {
   /// order, then an evaluation; keeps the best weights.
   /// @return false when a loss was not finite
   bool run_epoch();
-  /// Back to the first weights at another rate.
+  /// Back to the first weights, the problem's or the seed's, at another rate.
   void restart(double learning_rate);
   /// One step on the records `rows`; also what bench-step times.
   void step(std::span<const std::int64_t> rows);
@@ -49,6 +49,7 @@ class Training {
 
   networks::Hyperparameters hyperparameters_;
   base::Seed seed_;
+  MatrixF start_;
   bool own_loops_;
   Records train_, validation_;
   Mlp mlp_;

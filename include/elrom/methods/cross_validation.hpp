@@ -1,6 +1,7 @@
 #pragma once
 // Folds of cases, and predictions by models that did not see their fold.
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,15 @@ namespace elrom::methods {
 /// @param rows that take part @param n_folds, the return value and errors as above
 [[nodiscard]] Folds spread_folds(const field::CaseSet& cases, std::span<const std::size_t> rows,
                                  std::size_t n_folds);
+
+/// The same folds, which more cases have joined: each that of the case among them whose load is nearest (of
+/// equally near ones the first). Models of the folds as they were have seen nothing of the new ones.
+[[nodiscard]] Folds joined(Folds folds, std::span<const double> loads, std::span<const std::size_t> more);
+
+/// What `make` makes of the rows; with a warm start of those that it knows, which the others have joined.
+[[nodiscard]] Folds folds_of(std::span<const std::size_t> rows, std::span<const double> loads,
+                             const FitContext& context,
+                             const std::function<Folds(std::span<const std::size_t>)>& make);
 
 /// All rows of `folds` but those of fold `left_out`, ascending.
 [[nodiscard]] std::vector<std::size_t> rows_without(const Folds& folds, std::size_t left_out);

@@ -1,6 +1,12 @@
 #pragma once
 // The source's method for one field: screen every column, sort the columns into bands, search each band's
 // hyperparameters, build each band's network several times.
+//
+// With a warm start the plan is that of the cases known before, and every network of the model goes on from the
+// one that was trained on those. Cross-validation trains nothing: its networks are those of the known cases, and
+// a further case is predicted by those that did not see its neighbours in load either. They lack the further
+// cases, so that the error is a little too large, never too small. What was known before is taken from the
+// cache, or made again.
 
 #include <memory>
 #include <string>
@@ -44,10 +50,8 @@ class NetworksMethod final : public Method {
   [[nodiscard]] NetworkPlan plan(const field::FieldData& data, std::span<const std::size_t> cases,
                                  const FitContext& context) const;
 
-  /// Later calls take bands and hyperparameters from here instead of screening and searching: retraining when
-  /// a few cases were added.
+  /// Later calls take bands and hyperparameters from here instead of screening and searching.
   void keep_plan(const std::string& field, NetworkPlan plan);
-  void forget_plan(const std::string& field) { kept_.erase(field); }
   /// The closed-form screen on the same records, whatever screen.method says; cheap, not kept.
   [[nodiscard]] networks::ScreeningResult fast_screen(const field::FieldData& data,
                                                       std::span<const std::size_t> cases,
@@ -57,13 +61,14 @@ class NetworksMethod final : public Method {
   [[nodiscard]] networks::RecordSource screened_records(const field::FieldData& data,
                                                         std::span<const std::size_t> cases,
                                                         const FitContext& context) const;
-  [[nodiscard]] networks::RecordSource records(const field::FieldData& data,
-                                               std::span<const std::size_t> cases,
-                                               const FitContext& context) const;
+  /// Records of some cases, and of those of them that were known.
+  struct Records;
   [[nodiscard]] NetworkPlan plan(const field::FieldData& data, std::span<const std::size_t> cases,
                                  const networks::RecordSource& records, const FitContext& context) const;
+  [[nodiscard]] networks::TrainingResult train(const networks::BuildStage& stage,
+                                               const FitContext& context) const;
   [[nodiscard]] std::vector<model::Submodel> build(const field::FieldData& data, const NetworkPlan& plan,
-                                                   const networks::RecordSource& records, int n_builds,
+                                                   const Records& records, int n_builds,
                                                    const FitContext& context, int n_threads) const;
   [[nodiscard]] std::unique_ptr<model::FieldModel> assemble(const field::FieldData& data,
                                                             const networks::RecordSet& set,

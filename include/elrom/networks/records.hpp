@@ -33,14 +33,19 @@ struct RecordSet {
 };
 
 /// @param part (n_cases * n_planes), case by case. Scalers see cases with a training record only.
+/// @param scaled_by the cases that scalers see, ascending; empty: all
 [[nodiscard]] RecordSet make_records(const field::FieldRows& data, const std::vector<Part>& part,
-                                     const RecordOptions& options);
+                                     const RecordOptions& options,
+                                     std::span<const std::size_t> scaled_by = {});
 
 /// All that records depend on beside the data.
 struct RecordRecipe {
   RecordOptions options;
   PartRule parts;
   base::Seed seed{1};  ///< of the split into parts
+  /// Cases, counted among the source's and ascending, whose parts and scales hold: the records of these alone
+  /// are what they would be without the others, so that their networks can be gone on with. Empty: all.
+  std::vector<std::size_t> known = {};
 };
 
 /// The records of some cases of a field, made when they are first asked for: a stage that is kept needs only

@@ -75,6 +75,7 @@ struct BuildStage {
   TrainingBudget budget;
   const Trainer* trainer;
   base::Seed seed;
+  MatrixF start = {};  ///< weights to begin at: TrainingProblem::start
   [[nodiscard]] io::TensorFile compute(const StageContext& context) const;
 };
 

@@ -25,7 +25,11 @@ struct TrainingProblem {
   MatrixF train_inputs, train_targets;            //!< (n_train, n_in), (n_train, n_out)
   MatrixF validation_inputs, validation_targets;  //!< (n_validation, ...)
   MatrixF train_weights, validation_weights;      //!< 0 or 1 for every target, same shape; empty: all count
+  MatrixF start;                                  //!< parameters_of() to begin at; empty: drawn from the seed
 };
+
+/// Weights (n_out, n_in), then bias, layer after layer, (1, n_parameters); empty for an empty network.
+[[nodiscard]] MatrixF parameters_of(const model::Network& network);
 
 /// Told the validation error after each epoch.
 class TrainingMonitor {
@@ -67,7 +71,8 @@ class Trainer {
   virtual ~Trainer() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] std::string key() const { return name(); }  ///< in the keys of stages that train
-  /// The same arguments give the same bits. @param checkpoint file to resume from and to save to; empty: none
+  /// The same arguments give the same bits. Weights that the training begins at do not count as an epoch: what
+  /// comes out has seen these records. @param checkpoint file to resume from and to save to; empty: none
   /// @throws Interrupted on `stop`
   [[nodiscard]] virtual TrainingResult train(const TrainingProblem& problem,
                                              const Hyperparameters& hyperparameters,

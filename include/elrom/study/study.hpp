@@ -81,11 +81,10 @@ class Study {
   [[nodiscard]] GateCases gate_cases() const;
   /// Whether a bundle was trained on these very cases with these settings: nothing new could be learned.
   [[nodiscard]] bool is_of_this_study(const model::BundleInfo& bundle) const;
-  /// Retraining: fit() takes the networks' bands and hyperparameters of these earlier cases, where the fast
-  /// screen says that the cases since then left the bands as they were.
-  void reuse_plans_of(const std::vector<std::string>& earlier_cases);
   /// Retraining: fit() begins at this bundle where a method can, and tries those candidates again that had a
-  /// part in it or were near to one. What comes out depends on its digest. @throws InputError
+  /// part in it or were near to one. Networks take bands, hyperparameters and first weights from those of its
+  /// cases, where the fast screen says that the cases since then left the bands as they were. What comes out
+  /// depends on the bundle's digest. @throws InputError
   void begin_at(const std::filesystem::path& bundle);
 
  private:
