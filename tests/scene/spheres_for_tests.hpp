@@ -10,8 +10,11 @@
 #include "elrom/particle/exact_model.hpp"
 #include "elrom/scene/mover.hpp"
 #include "elrom/scene/neighbours.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::scene::test {
+
+using namespace elrom::test;  // test::read_bytes is found here too
 
 constexpr double pi = std::numbers::pi;
 
