@@ -9,6 +9,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/base/units.hpp"
 #include "elrom/io/toml.hpp"
 
 namespace elrom::io {
@@ -174,6 +175,34 @@ double read_real(const SettingValue& value, double low, double high) {
   const auto number = value.real();
   if (number && *number >= low && *number <= high) return *number;
   value.refuse(fmt::format("a number from {} to {}", base::number(low), base::number(high)));
+}
+
+double read_quantity(const SettingValue& value, std::string_view si, double low, double high) {
+  const auto expected = [&] {
+    const bool is_bounded = low > -HUGE_VAL || high < HUGE_VAL;
+    return "a number in " + std::string(si) + " or a text with a unit, \"1 " + std::string(si) + "\"" +
+           (is_bounded ? ", from " + base::number(low) + " to " + base::number(high) : "");
+  };
+  std::optional<double> number = value.real();
+  if (value.text() != nullptr) {
+    try {
+      number = base::quantity(*value.text(), si);
+    } catch (const InputError& error) {
+      value.refuse(expected() + " (" + error.what() + ")");
+    }
+  }
+  if (number && *number >= low && *number <= high && std::isfinite(*number)) return *number;
+  value.refuse(expected());
+}
+
+std::vector<double> read_quantities(const SettingValue& value, std::string_view si, std::size_t n) {
+  const auto* list = value.list();
+  if (list == nullptr || list->size() != n)
+    value.refuse("a list of " + std::to_string(n) + " numbers in " + std::string(si) +
+                 ", or texts with a unit");
+  std::vector<double> numbers;
+  for (const auto& item : *list) numbers.push_back(read_quantity(item, si, -HUGE_VAL, HUGE_VAL));
+  return numbers;
 }
 
 std::string read_word(const SettingValue& value, const std::vector<std::string>& choices) {

@@ -195,5 +195,40 @@ TEST(SettingsTable, RowsThatTomlCannotWriteAreOurMistake) {
   EXPECT_THROW(apart.real("y", "", rate, 0, 1), std::logic_error);
 }
 
+struct Jet {
+  struct Direction {
+    double x = 0, y = 0, z = 0;
+  };
+  double width = 0;
+  Direction velocity;
+};
+
+SettingsTable<Jet> jet_table() {
+  SettingsTable<Jet> table;
+  table.quantity(
+      "width", "", [](auto& j) -> auto& { return j.width; }, "m", 0, 1);
+  table.vector(
+      "velocity", "", [](auto& j) -> auto& { return j.velocity; }, "m/s");
+  return table;
+}
+
+TEST(SettingsTable, QuantitiesTakeUnitsAndAreWrittenInSi) {
+  Jet jet;
+  jet_table().read(jet, parse_settings("width = \"15 mm\"\nvelocity = [1, \"36 km/h\", 0]", "jet.toml"));
+  EXPECT_DOUBLE_EQ(jet.width, 0.015);
+  EXPECT_DOUBLE_EQ(jet.velocity.y, 10);
+  Jet again;
+  jet_table().read(again, parse_settings(jet_table().write(jet), "again.toml"));
+  EXPECT_EQ(again.width, jet.width);
+  EXPECT_EQ(again.velocity.y, jet.velocity.y);
+}
+
+TEST(SettingsTable, QuantitiesOfAnotherDimensionOrRangeAreRefused) {
+  Jet jet;
+  for (const auto* text : {"width = \"3 kg\"", "width = \"2 m\"", "width = -1", "width = nan", "width = true",
+                           "velocity = [1, 2]", "velocity = 3", "velocity = [1, 2, inf]"})
+    EXPECT_THROW(jet_table().read(jet, parse_settings(text, "jet.toml")), UsageError) << text;
+}
+
 }  // namespace
 }  // namespace elrom::io

@@ -50,6 +50,9 @@ inline constexpr FileKind collision_training{
     "elrom-collision-training", {1, 0}, "train again with elrom-train collisions"};
 inline constexpr FileKind collision_report{
     "elrom-collision-report", {1, 0}, "report again with elrom-report collisions"};
+inline constexpr FileKind scene_checkpoint{
+    "elrom-scene-checkpoint", {1, 0}, "remove it and simulate again with elrom-simulate"};
+inline constexpr FileKind scene_summary{"elrom-scene", {1, 0}, "simulate again with elrom-simulate"};
 
 inline constexpr std::array all{mesh,
                                 snapshots,
@@ -72,7 +75,9 @@ inline constexpr std::array all{mesh,
                                 collision_summary,
                                 collision,
                                 collision_training,
-                                collision_report};
+                                collision_report,
+                                scene_checkpoint,
+                                scene_summary};
 }  // namespace kinds
 
 /// What a file says of itself; nothing where it says nothing.

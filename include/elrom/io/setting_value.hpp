@@ -76,6 +76,11 @@ class SettingValue {
 [[nodiscard]] double read_real(const SettingValue& value, double low, double high);
 /// @param choices empty: any text
 [[nodiscard]] std::string read_word(const SettingValue& value, const std::vector<std::string>& choices);
+/// A number in SI, or a text with a unit: "315 um". @param si the unit of the dimension wanted, "m"
+[[nodiscard]] double read_quantity(const SettingValue& value, std::string_view si, double low, double high);
+/// A list of `n` of them.
+[[nodiscard]] std::vector<double> read_quantities(const SettingValue& value, std::string_view si,
+                                                  std::size_t n);
 [[nodiscard]] std::vector<std::string> read_words(const SettingValue& value);
 /// @param expected said of a value that is no list of numbers
 [[nodiscard]] std::vector<double> read_numbers(const SettingValue& value, const std::string& expected);

@@ -59,6 +59,26 @@ class SettingsTable {
     return simple(std::move(key), std::move(meaning), member,
                   [=](const SettingValue& value) { return read_real(value, low, high); });
   }
+  /// A number in SI, or a text with a unit; written in SI.
+  template <class Member>
+  Row& quantity(std::string key, std::string meaning, Member member, std::string si, double low,
+                double high) {
+    return simple(std::move(key), std::move(meaning), member,
+                  [=](const SettingValue& value) { return read_quantity(value, si, low, high); });
+  }
+  /// [x, y, z] of such. @param member a struct of three doubles
+  template <class Member>
+  Row& vector(std::string key, std::string meaning, Member member, std::string si) {
+    return add({std::move(key), std::move(meaning),
+                [=](S& s, const SettingValue& value) {
+                  const auto found = read_quantities(value, si, 3);
+                  member(s) = {found[0], found[1], found[2]};
+                },
+                [=](const S& s) {
+                  const auto& [x, y, z] = member(s);
+                  return toml_text(std::vector<double>{x, y, z});
+                }});
+  }
   template <class Member>
   Row& flag(std::string key, std::string meaning, Member member) {
     return simple(std::move(key), std::move(meaning), member, read_flag);

@@ -1,0 +1,77 @@
+#pragma once
+// A scene that runs: the list of effects made from its settings, the state that they change, steps, checkpoints.
+//
+// Thread rule: one thread calls; steps use threads of their own, and give the same bits for any number.
+
+#include <memory>
+#include <vector>
+
+#include "elrom/base/log.hpp"
+#include "elrom/io/tensor_file.hpp"
+#include "elrom/scene/scene_settings.hpp"
+
+namespace elrom::scene {
+
+/// An effect of the list with what it costs.
+struct EffectCost {
+  std::string name;
+  double bytes_estimated = 0, seconds_estimated = 0;  ///< of the whole run
+  double bytes = 0, seconds = 0;                      ///< measured so far
+};
+
+class Simulation {
+ public:
+  /// Reads what the effects need, places the spheres that are there at the start.
+  /// @throws UsageError, InputError for what cannot be: no room for the spheres, an unknown region, friction with ...
+  Simulation(SceneSettings settings, int n_threads);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  [[nodiscard]] const SceneSettings& settings() const { return settings_; }
+  [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] const Domain& domain() const { return domain_; }
+  [[nodiscard]] const std::vector<std::string>& group_names() const { return group_names_; }
+  [[nodiscard]] bool done() const { return state_.step >= settings_.n_steps(); }
+  /// Spheres that are still to come.
+  [[nodiscard]] std::int64_t due() const;
+
+  /// One time step. @throws NumericalError where something is no number any more
+  void step();
+  [[nodiscard]] std::vector<EffectCost> costs() const;
+  /// Of the movement, for people.
+  [[nodiscard]] std::string text() const { return mover_->text(); }
+
+  /// All of the state. The run that is saved goes on as one that was loaded does.
+  [[nodiscard]] io::TensorFile save();
+  /// @throws InputError for another scene's file, or a damaged one
+  void load(const io::TensorFile& file);
+
+ private:
+  struct Timed;
+  void add(std::unique_ptr<Effect> effect);
+  void add_forces();
+  void add_openings();
+  void place_groups();
+  void push(double dt);
+  void apply(Timed& timed, double dt);
+  void kick(double dt);
+  [[nodiscard]] Body region(const std::string& name) const;
+
+  SceneSettings settings_;
+  int n_threads_;
+  Domain domain_;
+  std::vector<std::string> group_names_;
+  std::vector<Source> sources_;
+  std::vector<std::int64_t> placed_;  // of each source; effects hold on to them
+  std::unique_ptr<GasField> gas_;
+  std::unique_ptr<Mover> mover_;
+  std::vector<Timed> effects_;
+  State state_;
+  bool has_forces_ = false;
+};
+
+/// SHA-256 of what decides a scene's result: all settings but the duration.
+[[nodiscard]] std::string digest_of(const SceneSettings& settings);
+
+}  // namespace elrom::scene

@@ -1,0 +1,134 @@
+// elrom-simulate: spheres in a scene, with the effects that it names.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "elrom/base/app.hpp"
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/comma_list.hpp"
+#include "elrom/base/parallel.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/base/version.hpp"
+#include "elrom/cli/cli.hpp"
+#include "elrom/scene/scene_run.hpp"
+#include "elrom/units/udunits.hpp"
+
+namespace elrom::programs {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SimulateOptions {
+  std::filesystem::path scene, output, json;
+  std::vector<std::string> changes;
+  int threads = base::available_threads();
+  bool explain = false, small = false;
+};
+
+std::string cost_line(const scene::EffectCost& cost, bool measured) {
+  const double bytes = measured ? cost.bytes : cost.bytes_estimated;
+  const double seconds = measured ? cost.seconds : cost.seconds_estimated;
+  return fmt::format("  {:<28}{:>14} bytes{:>14} s\n", cost.name, base::rounded(bytes),
+                     base::rounded(seconds));
+}
+
+void explain(const scene::Simulation& simulation, bool measured) {
+  fmt::print("{} of {}:\n", measured ? "Measured" : "Effects, estimated on one thread",
+             simulation.settings().name);
+  for (const auto& cost : simulation.costs()) fmt::print("{}", cost_line(cost, measured));
+  if (measured && !simulation.text().empty()) fmt::print("  {}\n", simulation.text());
+}
+
+Json json_of(const scene::Simulation& simulation, const scene::SceneRun& run, int threads) {
+  const auto& state = simulation.state();
+  const auto& tally = state.tally;
+  auto json = io::json_head<Json>(io::kinds::scene_summary);
+  json["scene"] = simulation.settings().name;
+  json["collision_model"] = simulation.settings().collisions;
+  json["time_step_s"] = simulation.settings().time_step;
+  json["time_s"] = state.time;
+  json["seconds"] = run.seconds;
+  json["threads"] = threads;
+  json["steps"] = run.steps;
+  json["resumed_from"] = run.resumed_from;
+  json["spheres"] = state.particles.size();
+  json["waiting"] = state.waiting.size();
+  json["due"] = simulation.due();
+  json["mass_kg"] = mass_of(state.particles);
+  json["kinetic_energy_j"] = kinetic_energy_of(state.particles);
+  json["collisions"] = tally.collisions;
+  json["wall_hits"] = tally.wall_hits;
+  json["left"] = tally.left;
+  json["returned"] = tally.returned;
+  json["skipped_collisions"] = tally.skipped;
+  for (const auto& cost : simulation.costs())
+    json["effects"].push_back({{"name", cost.name},
+                               {"bytes_estimated", cost.bytes_estimated},
+                               {"seconds_estimated", cost.seconds_estimated},
+                               {"bytes", cost.bytes},
+                               {"seconds", cost.seconds}});
+  json["files"] = run.files;
+  return json;
+}
+
+void report(const scene::Simulation& simulation, const scene::SceneRun& run, const SimulateOptions& options) {
+  const auto& state = simulation.state();
+  const double rate = run.seconds > 0 ? static_cast<double>(run.steps) *
+                                            static_cast<double>(state.particles.size()) / run.seconds
+                                      : 0;
+  fmt::print(
+      "{} spheres after {} s: {} collisions, {} wall hits{}{}.\n{} steps took {} on {} thread{} ({:.3g} sphere steps/s).\n",
+      state.particles.size(), base::number(state.time), state.tally.collisions, state.tally.wall_hits,
+      state.tally.left > 0 ? fmt::format(", {} left, {} came back", state.tally.left, state.tally.returned)
+                           : "",
+      state.tally.skipped > 0
+          ? fmt::format("; {} collisions of jammed spheres were skipped", state.tally.skipped)
+          : "",
+      run.steps, base::duration(run.seconds), options.threads, options.threads == 1 ? "" : "s", rate);
+  fmt::print("Written: {}\n", options.output.string());
+}
+
+int simulate(const SimulateOptions& options) {
+  units::use_udunits();
+  auto settings = scene::read_scene(options.scene, options.changes);
+  if (options.small) settings.duration = std::min(settings.duration, 20 * settings.time_step);
+  scene::Simulation simulation(settings, options.threads);
+  if (options.explain) explain(simulation, false);
+  const auto log = make_console_log();
+  const auto done = scene::run(simulation, options.output, *log, base::interrupt_token());
+  if (options.explain) explain(simulation, true);
+  if (!options.json.empty())
+    base::write_text(options.json, json_of(simulation, done, options.threads).dump(2) + "\n");
+  report(simulation, done, options);
+  return 0;
+}
+
+int run_simulate(int argc, char** argv) {
+  SimulateOptions options;
+  cli::App app(
+      "ELROM: simulate spheres in a scene, with the effects that it names and no others.\nRun again after a crash or Ctrl-C, "
+      "the same command goes on from the last checkpoint.",
+      "elrom-simulate");
+  app.set_version_flag("--version", program_version());
+  app.add_option("SCENE", options.scene, "The scene, TOML")->type_name("SCENE.toml")->required();
+  app.add_option("--output", options.output, "Folder to write to")->type_name("DIR")->required();
+  base::repeatable(app.add_option("--set", options.changes, "Change a setting: effects.collisions=dem"))
+      ->type_name("KEY=VALUE");
+  app.add_option("--threads", options.threads, "Processor threads; the result does not depend on them")
+      ->check(cli::PositiveNumber)
+      ->capture_default_str();
+  app.add_flag("--explain", options.explain,
+               "Print what each effect costs, estimated before and measured after");
+  app.add_flag("--small", options.small, "At most 20 time steps");
+  app.add_option("--json", options.json, "Write what happened to this file too")->type_name("FILE");
+  app.footer([] { return "Settings of a scene:\n" + scene::scene_help(); });
+  if (const auto status = app.parse(argc, argv)) return *status;
+  return simulate(options);
+}
+
+}  // namespace
+}  // namespace elrom::programs
+
+int main(int argc, char** argv) {
+  return elrom::base::run_app("elrom-simulate", [&] { return elrom::programs::run_simulate(argc, argv); });
+}

@@ -1,0 +1,231 @@
+#include "elrom/scene/scene_run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/io/csv.hpp"
+#include "elrom/scene/neighbours.hpp"
+
+namespace elrom::scene {
+namespace {
+
+using std::filesystem::path;
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string joined(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ",") + base::number(value);
+  return text + "\n";
+}
+
+std::string series_heading(const Simulation& simulation) {
+  std::string text =
+      "time [s],spheres,waiting,mass [kg],momentum_x [kg m/s],momentum_y [kg m/s],momentum_z [kg m/s],"
+      "kinetic_energy [J],greatest_speed [m/s],collisions,wall_hits,left,returned";
+  const auto& names = simulation.group_names();
+  for (const auto& name : names)
+    text += "," + io::csv_cell("number of " + name) + "," + io::csv_cell("mean height of " + name + " [m]");
+  for (std::size_t a = 0; a < names.size(); ++a)
+    for (std::size_t b = a; b < names.size(); ++b)
+      text += "," + io::csv_cell("collisions of " + names[a] + " and " + names[b]);
+  return text + "\n";
+}
+
+std::string series_row(const Simulation& simulation) {
+  const auto& s = simulation.state();
+  const auto& p = s.particles;
+  const Vec momentum = momentum_of(p);
+  std::vector<double> row{s.time,
+                          static_cast<double>(p.size()),
+                          static_cast<double>(s.waiting.size()),
+                          mass_of(p),
+                          momentum.x,
+                          momentum.y,
+                          momentum.z,
+                          kinetic_energy_of(p),
+                          greatest_speed_of(p)};
+  for (const auto count : {s.tally.collisions, s.tally.wall_hits, s.tally.left, s.tally.returned})
+    row.push_back(static_cast<double>(count));
+  const auto n_groups = simulation.group_names().size();
+  std::vector<double> numbers(n_groups), heights(n_groups);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto g = static_cast<std::size_t>(p.group[i]);
+    ++numbers[g];
+    heights[g] += p.place[2][i];
+  }
+  for (std::size_t g = 0; g < n_groups; ++g)
+    row.insert(row.end(), {numbers[g], numbers[g] > 0 ? heights[g] / numbers[g] : 0});
+  for (std::size_t a = 0; a < n_groups; ++a)
+    for (std::size_t b = a; b < n_groups; ++b)
+      row.push_back(static_cast<double>(s.tally.by_groups[a * n_groups + b]));
+  return joined(row);
+}
+
+constexpr const char* section_heading =
+    "time [s],x [m],y [m],z [m],number,mass [kg],volume_fraction,velocity_x [m/s],velocity_y [m/s],velocity_z [m/s]\n";
+
+struct CellSums {
+  double number = 0, mass = 0, volume = 0;
+  Vec momentum;
+};
+
+// By where the centres are.
+std::string section_rows(const SectionSettings& section, const State& state, const Domain& domain) {
+  const auto& p = state.particles;
+  const std::array<std::size_t, 3> n{static_cast<std::size_t>(section.cells[0]),
+                                     static_cast<std::size_t>(section.cells[1]),
+                                     static_cast<std::size_t>(section.cells[2])};
+  const Vec size = section.high - section.low;
+  const std::array<double, 3> step{size.x / static_cast<double>(n[0]), size.y / static_cast<double>(n[1]),
+                                   size.z / static_cast<double>(n[2])};
+  std::vector<CellSums> cells(n[0] * n[1] * n[2]);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Vec at = domain.wrapped(get(p.place, i)) - section.low;
+    const std::array<double, 3> along{at.x / step[0], at.y / step[1], at.z / step[2]};
+    bool inside = true;
+    for (std::size_t a = 0; a < 3; ++a)
+      inside = inside && along[a] >= 0 && along[a] < static_cast<double>(n[a]);
+    if (!inside) continue;
+    auto& cell =
+        cells[static_cast<std::size_t>(along[0]) +
+              n[0] * (static_cast<std::size_t>(along[1]) + n[1] * static_cast<std::size_t>(along[2]))];
+    ++cell.number;
+    cell.mass += p.mass[i];
+    cell.volume += p.mass[i] / p.density[i];
+    cell.momentum += p.mass[i] * get(p.velocity, i);
+  }
+  std::string text;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const auto& c = cells[k];
+    const auto centre = [&](std::size_t index, std::size_t a) {
+      return (static_cast<double>(index) + 0.5) * step[a];
+    };
+    const Vec place =
+        section.low + Vec{centre(k % n[0], 0), centre(k / n[0] % n[1], 1), centre(k / n[0] / n[1], 2)};
+    const Vec velocity = c.mass > 0 ? (1 / c.mass) * c.momentum : Vec{};
+    text += joined({state.time, place.x, place.y, place.z, c.number, c.mass,
+                    c.volume / (step[0] * step[1] * step[2]), velocity.x, velocity.y, velocity.z});
+  }
+  return text;
+}
+
+// The tables of a run, kept in its checkpoint so that they go on where it does.
+class Outputs {
+ public:
+  Outputs(const Simulation& simulation, path folder) : simulation_(simulation), folder_(std::move(folder)) {
+    series_ = series_heading(simulation);
+    sections_.assign(simulation.settings().sections.size(), section_heading);
+  }
+
+  void add_rows() {
+    series_ += series_row(simulation_);
+    const auto& s = simulation_.settings();
+    for (std::size_t k = 0; k < sections_.size(); ++k)
+      sections_[k] += section_rows(s.sections[k], simulation_.state(), simulation_.domain());
+    if (std::ranges::find(s.formats, "vtp") == s.formats.end()) return;
+    const auto name = fmt::format("particles_{:012}.vtp", simulation_.state().step);
+    write_vtp(folder_ / name, simulation_.state().particles, simulation_.domain());
+    movie_ +=
+        fmt::format("<DataSet timestep=\"{}\" file=\"{}\"/>\n", base::number(simulation_.state().time), name);
+  }
+
+  std::vector<std::string> write() const {
+    std::vector<std::string> files;
+    const auto put = [&](const std::string& name, const std::string& text) {
+      base::write_text(folder_ / name, text);
+      files.push_back((folder_ / name).string());
+    };
+    put("series.csv", series_);
+    for (std::size_t k = 0; k < sections_.size(); ++k)
+      put("section_" + simulation_.settings().sections[k].name + ".csv", sections_[k]);
+    if (!movie_.empty())
+      put("particles.pvd",
+          "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" + movie_ +
+              "</Collection>\n</VTKFile>\n");
+    return files;
+  }
+
+  void save(io::TensorFile& file) const {
+    file.set_text("series", series_);
+    file.set_text("movie", movie_);
+    for (std::size_t k = 0; k < sections_.size(); ++k)
+      file.set_text(fmt::format("section_{}", k), sections_[k]);
+  }
+  void load(const io::TensorFile& file) {
+    series_ = file.text("series");
+    movie_ = file.text("movie");
+    for (std::size_t k = 0; k < sections_.size(); ++k) sections_[k] = file.text(fmt::format("section_{}", k));
+  }
+
+ private:
+  const Simulation& simulation_;
+  path folder_;
+  std::string series_, movie_;
+  std::vector<std::string> sections_;
+};
+
+void keep(Simulation& simulation, const Outputs& outputs, const path& file) {
+  auto saved = simulation.save();
+  outputs.save(saved);
+  saved.write(file);
+}
+
+void expect_sound(const Simulation& simulation) {
+  const auto& p = simulation.state().particles;
+  const auto overlaps = overlaps_of(p, simulation.domain(), 0.01, 1);
+  if (overlaps.n > 0)
+    throw UsageError(Problem{.what = fmt::format("{} pairs of spheres overlap at the start", overlaps.n),
+                             .expected = "spheres apart"});
+}
+
+}  // namespace
+
+SceneRun run(Simulation& simulation, const path& folder, Log& log, const std::stop_token& stop) {
+  std::filesystem::create_directories(folder);
+  const path file = folder / "checkpoint.elrom";
+  const base::FileLock lock(base::lock_beside(file));
+  base::remove_remains(file);
+  const auto& settings = simulation.settings();
+  Outputs outputs(simulation, folder);
+  SceneRun done;
+  if (std::filesystem::exists(file)) {
+    const auto saved = io::TensorFile::open(file, io::Verify::on_use);
+    simulation.load(saved);
+    outputs.load(saved);
+    done.resumed_from = simulation.state().step;
+  } else {
+    expect_sound(simulation);
+    base::write_text(folder / "scene.toml", to_toml(settings));
+    outputs.add_rows();
+  }
+  const auto every = settings.steps_in(settings.output_every),
+             keep_every = settings.steps_in(settings.checkpoint_every);
+  const double begin = seconds_now();
+  while (!simulation.done()) {
+    if (stop.stop_requested())
+      throw Interrupted(Problem{.what = "stopped",
+                                .advice = "run the same command again to go on from the last checkpoint"});
+    simulation.step();
+    ++done.steps;
+    const auto step = simulation.state().step;
+    if (step % every == 0 || simulation.done()) outputs.add_rows();
+    if (step % keep_every == 0 || simulation.done()) {
+      keep(simulation, outputs, file);
+      outputs.write();
+    }
+    log.progress({.task = settings.name, .done = step, .total = settings.n_steps(), .unit = "steps"});
+  }
+  done.seconds = seconds_now() - begin;
+  done.files = outputs.write();
+  return done;
+}
+
+}  // namespace elrom::scene

@@ -1,0 +1,262 @@
+// Collisions at their exact times. Between forces spheres fly straight, so a step is a row of events in the order of
+// time: pairs that touch, spheres that meet a wall. A sphere is moved only when something happens to it, and its
+// next events are sought among its neighbours. A step is cut where the list of neighbours ends to hold; that changes
+// nothing in what happens.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "elrom/base/error.hpp"
+#include "elrom/base/parallel.hpp"
+#include "elrom/scene/neighbours.hpp"
+#include "movers.hpp"
+#include "one_collision.hpp"
+#include "walls.hpp"
+
+namespace elrom::scene {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+constexpr std::size_t block_size = 2048;
+constexpr double least_skin = 0.1, most_skin = 0.6;  // of the largest diameter
+constexpr double skin_steps = 20;  // a list lasts this many half steps of the fastest sphere, where it may
+constexpr double reserve = 1.2;    // a sphere may become this much faster before the step is cut
+constexpr std::int64_t most_events = 20;  // a sphere, in the time it takes to cross the skin; more: jammed
+constexpr std::int32_t no_sphere = -1;
+
+struct Event {
+  double time;
+  std::int32_t i, j;  // no_sphere: a wall
+  std::uint32_t stamp_i, stamp_j;
+  const Side* side = nullptr;
+  // The earliest is the greatest, as a heap wants it.
+  bool operator<(const Event& b) const {
+    if (time != b.time) return time > b.time;
+    return i != b.i ? i > b.i : j > b.j;
+  }
+};
+
+// First contact of spheres d apart that move by w relative to each other; now for those that overlap and close in.
+double contact_time(const Vec& d, const Vec& w, double reach) {
+  const double closing = dot(d, w);
+  if (!(closing < 0)) return never;
+  const double gap = dot(d, d) - reach * reach;
+  if (gap <= 0) return 0;
+  const double speed = dot(w, w), root = closing * closing - speed * gap;
+  return root < 0 ? never : gap / (std::sqrt(root) - closing);
+}
+
+class Swept final : public Mover {
+ public:
+  Swept(const Domain& domain, const MoverSettings& settings)
+      : domain_(domain), settings_(settings), hit_(*settings.model) {}
+
+  void advance(State& state, double dt) override {
+    auto& p = state.particles;
+    if (p.size() == 0) return;
+    begin_ = state.time;
+    gone_.assign(domain_.has_outlets() ? p.size() : 0, 0);
+    while (dt > 0) {
+      const double fastest = reserve * greatest_speed_of(p);
+      if (!fresh_ || (used_ > 0 && used_ + fastest * dt > 0.5 * skin_)) renew(state, fastest * dt);
+      const double time = fastest * dt > 0.5 * skin_ - used_ ? (0.5 * skin_ - used_) / fastest : dt;
+      const double done = part(state, time, fastest);
+      used_ += fastest * done;
+      begin_ += done;
+      dt = done < dt ? dt - done : 0;
+    }
+    std::ranges::sort(state.leaving);
+  }
+  void forget() override { fresh_ = false; }
+  [[nodiscard]] std::size_t bytes() const override {
+    return neighbours_.bytes() + clock_.capacity() * sizeof(double) +
+           stamp_.capacity() * sizeof(std::uint32_t) + near_wall_.capacity() + gone_.capacity() +
+           queue_.capacity() * sizeof(Event);
+  }
+
+ private:
+  // A list that holds for the step and some more, but no longer than its pairs are few.
+  void renew(State& state, double travel) {
+    auto& p = state.particles;
+    if (domain_.images().any())
+      for (std::size_t i = 0; i < p.size(); ++i) set(p.place, i, domain_.wrapped(get(p.place, i)));
+    const double largest = *std::max_element(p.diameter.begin(), p.diameter.end());
+    skin_ = std::clamp(skin_steps * travel, least_skin * largest, most_skin * largest);
+    neighbours_.build(p, domain_, skin_, settings_.n_threads);
+    neighbours_.with_both();
+    near_wall_.assign(p.size(), 0);
+    for (const auto i : neighbours_.near_wall()) near_wall_[static_cast<std::size_t>(i)] = 1;
+    fresh_ = true;
+    used_ = 0;
+  }
+
+  // Moves all spheres by `time`, or by less where one has become faster than `fastest`. @return by how much
+  double part(State& state, double time, double fastest) {
+    auto& p = state.particles;
+    clock_.assign(p.size(), 0);
+    stamp_.assign(p.size(), 0);
+    first_events(p, time);
+    auto left = most_events * static_cast<std::int64_t>(p.size()) + 1000;
+    while (!queue_.empty()) {
+      const Event event = pop();
+      if (event.time > time) break;
+      if (is_stale(event)) continue;
+      if (--left < 0) {
+        ++state.tally.skipped;
+        continue;
+      }
+      happen(state, event);
+      if (is_faster(p, event.i, fastest) || is_faster(p, event.j, fastest)) time = event.time;
+      for (const auto k : {event.i, event.j})
+        if (k >= 0) seek(p, static_cast<std::size_t>(k), event.time, time);
+    }
+    queue_.clear();
+    base::parallel_for(
+        (p.size() + block_size - 1) / block_size, settings_.n_threads, [&](std::size_t block, int) {
+          for (std::size_t i = block * block_size; i < std::min(p.size(), (block + 1) * block_size); ++i)
+            bring(p, i, time);
+        });
+    return time;
+  }
+
+  void first_events(const Particles& p, double time) {
+    const std::size_t n_blocks = (p.size() + block_size - 1) / block_size;
+    found_.resize(n_blocks);
+    base::parallel_for(n_blocks, settings_.n_threads, [&](std::size_t block, int) {
+      found_[block].clear();
+      for (std::size_t i = block * block_size; i < std::min(p.size(), (block + 1) * block_size); ++i) {
+        for (const auto j : neighbours_.above(i))
+          seek_pair(p, i, static_cast<std::size_t>(j), 0, time, found_[block]);
+        seek_wall(p, i, 0, time, found_[block]);
+      }
+    });
+    for (const auto& events : found_) queue_.insert(queue_.end(), events.begin(), events.end());
+    std::make_heap(queue_.begin(), queue_.end());
+  }
+
+  // What happens to a sphere next, from `now` on.
+  void seek(const Particles& p, std::size_t i, double now, double time) {
+    if (is_gone(i)) return;
+    fresh_events_.clear();
+    for (const auto j : neighbours_.all(i))
+      seek_pair(p, i, static_cast<std::size_t>(j), now, time, fresh_events_);
+    seek_wall(p, i, now, time, fresh_events_);
+    for (const auto& event : fresh_events_) {
+      queue_.push_back(event);
+      std::push_heap(queue_.begin(), queue_.end());
+    }
+  }
+
+  void seek_pair(const Particles& p, std::size_t i, std::size_t j, double now, double time,
+                 std::vector<Event>& events) const {
+    if (is_gone(i) || is_gone(j)) return;
+    Vec apart = place_at(p, j, now) - place_at(p, i, now);
+    if (domain_.images().any()) apart = domain_.images().nearest(apart);
+    const double in =
+        contact_time(apart, get(p.velocity, j) - get(p.velocity, i), 0.5 * (p.diameter[i] + p.diameter[j]));
+    if (now + in > time) return;
+    const std::size_t a = std::min(i, j), b = std::max(i, j);
+    events.push_back(
+        {now + in, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), stamp_[a], stamp_[b]});
+  }
+
+  void seek_wall(const Particles& p, std::size_t i, double now, double time,
+                 std::vector<Event>& events) const {
+    if (near_wall_[i] == 0 || is_gone(i)) return;
+    const auto exit =
+        domain_.first_exit(place_at(p, i, now), get(p.velocity, i), 0.5 * p.diameter[i], time - now);
+    if (exit.side != nullptr)
+      events.push_back({now + exit.time, static_cast<std::int32_t>(i), no_sphere, stamp_[i], 0, exit.side});
+  }
+
+  void happen(State& state, const Event& event) {
+    auto& p = state.particles;
+    const auto i = static_cast<std::size_t>(event.i);
+    bring(p, i, event.time);
+    ++stamp_[i];
+    if (event.j == no_sphere) return meet_wall(state, i, event);
+    const auto j = static_cast<std::size_t>(event.j);
+    bring(p, j, event.time);
+    ++stamp_[j];
+    const Vec apart = domain_.images().nearest(get(p.place, j) - get(p.place, i));
+    const Vec normal = (1 / std::sqrt(dot(apart, apart))) * apart;
+    if (is_resting(p, i, event.time) || is_resting(p, j, event.time))
+      bounce(p, i, j, normal);
+    else
+      hit_.apply(p, i, j, normal);
+    if (p.remembers_hits) p.last_hit[i] = p.last_hit[j] = begin_ + event.time;
+    state.count_collision(i, j);
+  }
+
+  void meet_wall(State& state, std::size_t i, const Event& event) {
+    auto& p = state.particles;
+    if (event.side->kind == SideKind::outlet) {
+      gone_[i] = 1;
+      state.leaving.push_back(static_cast<std::int32_t>(i));
+      return;
+    }
+    auto law = settings_.walls;
+    if (is_resting(p, i, event.time)) law.normal_restitution = law.tangential_restitution = 1;
+    set(p.velocity, i, reflected(get(p.velocity, i), *event.side, law));
+    if (p.remembers_hits) p.last_hit[i] = begin_ + event.time;
+    ++state.tally.wall_hits;
+  }
+
+  // Without loss.
+  static void bounce(Particles& p, std::size_t i, std::size_t j, const Vec& normal) {
+    const double closing = dot(get(p.velocity, i) - get(p.velocity, j), normal);
+    const double impulse = 2 * closing * p.mass[i] * p.mass[j] / (p.mass[i] + p.mass[j]);
+    set(p.velocity, i, get(p.velocity, i) - (impulse / p.mass[i]) * normal);
+    set(p.velocity, j, get(p.velocity, j) + (impulse / p.mass[j]) * normal);
+  }
+
+  Event pop() {
+    const Event event = queue_.front();
+    std::pop_heap(queue_.begin(), queue_.end());
+    queue_.pop_back();
+    return event;
+  }
+  [[nodiscard]] bool is_stale(const Event& event) const {
+    return stamp_[static_cast<std::size_t>(event.i)] != event.stamp_i ||
+           (event.j != no_sphere && stamp_[static_cast<std::size_t>(event.j)] != event.stamp_j);
+  }
+  [[nodiscard]] bool is_resting(const Particles& p, std::size_t i, double now) const {
+    return p.remembers_hits && begin_ + now - p.last_hit[i] < settings_.contact_time;
+  }
+  [[nodiscard]] bool is_gone(std::size_t i) const { return !gone_.empty() && gone_[i] != 0; }
+  [[nodiscard]] static bool is_faster(const Particles& p, std::int32_t i, double fastest) {
+    if (i == no_sphere) return false;
+    const Vec v = get(p.velocity, static_cast<std::size_t>(i));
+    return dot(v, v) > fastest * fastest;
+  }
+  [[nodiscard]] Vec place_at(const Particles& p, std::size_t i, double now) const {
+    return get(p.place, i) + (now - clock_[i]) * get(p.velocity, i);
+  }
+  void bring(Particles& p, std::size_t i, double now) {
+    set(p.place, i, place_at(p, i, now));
+    clock_[i] = now;
+  }
+
+  const Domain& domain_;
+  MoverSettings settings_;
+  OneCollision hit_;
+  NeighbourList neighbours_;
+  bool fresh_ = false;
+  double skin_ = 0, used_ = 0;  // of the list: m, and how much of it has been travelled
+  double begin_ = 0;            // of the part, s
+  std::vector<double> clock_;   // of each sphere: when it is where its place says, from the part's beginning
+  std::vector<std::uint32_t> stamp_;  // events of each sphere so far: older ones are stale
+  std::vector<std::uint8_t> near_wall_, gone_;
+  std::vector<Event> queue_, fresh_events_;  // a heap
+  std::vector<std::vector<Event>> found_;    // by block of spheres
+};
+
+}  // namespace
+
+std::unique_ptr<Mover> make_swept(const Domain& domain, const MoverSettings& settings) {
+  check(settings.model != nullptr, "swept collisions need a collision model");
+  return std::make_unique<Swept>(domain, settings);
+}
+
+}  // namespace elrom::scene

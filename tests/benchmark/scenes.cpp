@@ -1,0 +1,157 @@
+// bench-scenes: counts of collisions over time steps by each model, soft spheres as the yardstick; Haff's law; energy;
+// sphere steps a second.
+#include <cmath>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "elrom/particle/drag.hpp"
+#include "elrom/scene/simulation.hpp"
+#include "support/benchmark.hpp"
+
+namespace {
+
+using namespace elrom;
+using Json = nlohmann::ordered_json;
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+struct Outcome {
+  double seconds = 0, collisions = 0, energy_ratio = 0, momentum_change = 0, gain = 0;
+  std::size_t spheres = 0;
+};
+
+// Two streams that cross at 20 degrees off the axis, 10 m/s, 12 ms, as particles.md section 9 has them.
+std::string crossing(int number, const std::string& collisions, double step) {
+  const double edge = 0.0145 * std::cbrt(number / 12000.0);
+  const auto region = [&](const char* name, double low, double high) {
+    return std::string("\n[[regions]]\nname = \"") + name + "\"\nlow = [" + std::to_string(low) +
+           ", 0, 0]\nhigh = [" + std::to_string(high) + ", " + std::to_string(edge) + ", " +
+           std::to_string(edge) + "]\n";
+  };
+  const auto group = [&](const char* name, double u) {
+    return std::string("\n[[particles]]\ngroup = \"") + name + "\"\nregion = \"" + name +
+           "\"\ndiameter = \"315 um\"\nnumber = " + std::to_string(number / 2) + "\nvelocity = [" +
+           std::to_string(u) + ", 3.42, 0]\n";
+  };
+  return "[scene]\nname = \"crossing\"\nduration = 0.012\ntime_step = " + std::to_string(step * 1e9) +
+         "e-9\n[effects]\ncollisions = \"" + collisions +
+         "\"\n[collisions]\nrestitution = 0.9\nstiffness = 5000\n" + region("left", 0, 2 * edge) +
+         region("right", 2.2 * edge, 4.2 * edge) + group("left", 9.4) + group("right", -9.4);
+}
+
+Outcome run(const std::string& text) {
+  scene::Simulation simulation(scene::parse_scene(text, "bench"), 1);
+  const auto& p = simulation.state().particles;
+  const double energy = kinetic_energy_of(p);
+  const scene::Vec momentum = momentum_of(p);
+  Outcome out{.spheres = p.size()};
+  double before = energy, speed_mass = 0;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    speed_mass += p.mass[i] * std::sqrt(dot(get(p.velocity, i), get(p.velocity, i)));
+  const double begin = processor_seconds();
+  double checking = 0;
+  while (!simulation.done()) {
+    simulation.step();
+    const double at = processor_seconds(), now = kinetic_energy_of(p);
+    out.gain = std::max(out.gain, now / before - 1);
+    before = now;
+    checking += processor_seconds() - at;
+  }
+  out.seconds = processor_seconds() - begin - checking;
+  const scene::Vec change = momentum_of(p) - momentum;
+  out.momentum_change = std::sqrt(dot(change, change)) / speed_mass;
+  out.collisions = static_cast<double>(simulation.state().tally.collisions);
+  out.energy_ratio = kinetic_energy_of(p) / energy;
+  return out;
+}
+
+Json json_of(const std::string& model, double step, const Outcome& out, double yardstick) {
+  return {{"model", model},
+          {"time_step_s", step},
+          {"seconds", out.seconds},
+          {"collisions", out.collisions},
+          {"to_dem", out.collisions / yardstick},
+          {"energy_ratio", out.energy_ratio},
+          {"greatest_energy_gain_in_a_step", out.gain},
+          {"momentum_change", out.momentum_change}};
+}
+
+Json crossing_streams(bool small) {
+  const int number = small ? 2000 : 12000;
+  Json table = Json::array();
+  const auto dem = run(crossing(number, "dem", 1e-4));
+  table.push_back(json_of("dem", 1e-4, dem, dem.collisions));
+  for (const double step : {1e-3, 1e-4, 1e-5, 1e-6})
+    table.push_back(json_of("helscm", step, run(crossing(number, "helscm", step)), dem.collisions));
+  for (const double step : {1e-3, 1e-4, 7.14e-5, 1e-5})
+    table.push_back(
+        json_of("helscm_document", step, run(crossing(number, "helscm_document", step)), dem.collisions));
+  return table;
+}
+
+// MFiX-Exa's homogeneous cooling, in CGS: 5050 spheres of 0.01 cm in a cube of 64 diameters, temperature 1000 cm2/s2.
+Json haff(double restitution, const std::vector<double>& expected, bool small) {
+  const std::vector<double> times{1, 10, 30, 100};
+  const std::size_t n_times = small ? 2 : 4;
+  const double diameter = 1e-4, speed = std::sqrt(0.1), unit = diameter / speed;  // m, m/s, s
+  Json rows = Json::array();
+  scene::Simulation simulation(
+      scene::parse_scene(
+          "[scene]\nduration = " + std::to_string(times[n_times - 1] * unit) +
+              "\ntime_step = " + std::to_string(0.25 * unit) +
+              "\n[domain]\nperiodic = [\"x\", \"y\", \"z\"]\n[effects]\ncollisions = \"helscm\"\n"
+              "[collisions]\ncontact_time = 0\nrestitution = " +
+              std::to_string(restitution) +
+              "\n[[domain.boxes]]\nname = \"cube\"\nlow = [0, 0, 0]\nhigh = [0.0064, 0.0064, 0.0064]\n"
+              "[[particles]]\ngroup = \"a\"\ndiameter = 1e-4\nnumber = 5050\nscatter = " +
+              std::to_string(speed),
+          "haff"),
+      1);
+  const auto temperature = [&] {
+    return 2 * kinetic_energy_of(simulation.state().particles) / 3 / mass_of(simulation.state().particles);
+  };
+  const double start = temperature();
+  // The drawn temperature differs a little from the one asked for; time is counted in its own units.
+  const double own_unit = diameter / std::sqrt(start);
+  double last_time = 0, last = start;
+  for (std::size_t k = 0; k < n_times && !simulation.done();) {
+    simulation.step();
+    const double time = simulation.state().time, now = temperature();
+    while (k < n_times && time >= times[k] * own_unit) {
+      const double share = (times[k] * own_unit - last_time) / (time - last_time);
+      const double found = (last + share * (now - last)) / start;
+      rows.push_back(
+          {{"t", times[k]}, {"haff", expected[k]}, {"found", found}, {"error", found / expected[k] - 1}});
+      ++k;
+    }
+    last_time = time, last = now;
+  }
+  return rows;
+}
+
+Json measure(const benchmark::Arguments& arguments) {
+  Json json;
+  json["crossing_streams"] = crossing_streams(arguments.small);
+  const auto& table = json["crossing_streams"];
+  const double seconds_dem = table[0]["seconds"];
+  json["dem_seconds_over_swept_seconds"] = seconds_dem / table[2]["seconds"].get<double>();
+  double least = HUGE_VAL, most = 0;
+  for (std::size_t k = 1; k <= 4; ++k) {
+    least = std::min(least, table[k]["collisions"].get<double>());
+    most = std::max(most, table[k]["collisions"].get<double>());
+  }
+  json["helscm_spread_of_counts"] = most / least - 1;
+  json["haff_e_0.8"] = haff(0.8, {0.983438, 0.851252, 0.638403, 0.295837}, arguments.small);
+  json["haff_e_0.9"] = haff(0.9, {0.991210, 0.917064, 0.779390, 0.480650}, arguments.small);
+  const double n = arguments.small ? 2000 : 12000;
+  json["swept_sphere_steps_per_second"] = n * 12000 / table[4]["seconds"].get<double>();
+  return json;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return elrom::benchmark::benchmark_main("bench-scenes",
+                                          "Spheres in scenes: counts, energy, seconds by model and step.",
+                                          "not used", argc, argv, measure);
+}
