@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/random.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/peers.hpp"
@@ -41,6 +43,54 @@ TEST(BlendWeights, AreNeverNegative) {
   gram << 1, 1.5, 1.5, 4;  // the unconstrained optimum is (1.25, -0.25)
 
   EXPECT_EQ(blend_weights(gram), (std::vector<double>{1, 0}));
+}
+
+/// The least w^T G w over weights of a hundredth's grid with sum 1.
+double least_on_a_grid(const Eigen::Matrix3d& gram) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= 100; ++i)
+    for (int j = 0; i + j <= 100; ++j) {
+      const Eigen::Vector3d w = Eigen::Vector3d(i, j, 100 - i - j) / 100;
+      least = std::min(least, w.dot(gram * w));
+    }
+  return least;
+}
+
+TEST(BlendWeights, AreTheBestOfAllSetsOfMembers) {
+  base::Random random(base::Seed(5));
+  for (int trial = 0; trial < 50; ++trial) {
+    Eigen::Matrix3d errors;
+    for (double& value : errors.reshaped()) value = random.normal();
+    const Eigen::Matrix3d gram = errors * errors.transpose();
+    const auto weights = blend_weights(gram);
+    const Eigen::Vector3d w = Eigen::Vector3d::Map(weights.data());
+
+    EXPECT_NEAR(w.sum(), 1, 1e-9);
+    EXPECT_GE(w.minCoeff(), 0);
+    EXPECT_LE(w.dot(gram * w), least_on_a_grid(gram) + 1e-9);
+  }
+}
+
+TEST(Auto, GoesTowardsABlendAsFarAsItGains) {
+  // Equal and independent errors: the blend gains 1 - 1 / sqrt(2). Asked for three times that, it has a third.
+  Contest contest;
+  const Fake one("one", noise(contest.data, "a", 0.1)), two("two", noise(contest.data, "b", 0.1));
+  const double gain = 1 - std::sqrt(0.5);
+
+  const AutoFit fit = contest.run({&one, &two}, {.full_gain = 3 * gain});
+
+  const double less = std::min(fit.candidates[0].mean_weight(), fit.candidates[1].mean_weight());
+  EXPECT_NEAR(less, 0.5 / 3, 0.03);
+  EXPECT_NEAR(fit.nrmse, fit.candidates[0].nrmse * std::hypot(less, 1 - less), 0.08 * fit.nrmse);
+}
+
+TEST(Auto, AMemberOfNextToNoWeightIsLeftOut) {
+  Contest contest;
+  const Fake one("one", noise(contest.data, "a", 0.1)), two("two", noise(contest.data, "b", 0.1));
+
+  const AutoFit fit = contest.run({&one, &two}, {.full_gain = 3});  // a tenth of the way: 0.05
+
+  EXPECT_EQ(std::max(fit.candidates[0].mean_weight(), fit.candidates[1].mean_weight()), 1);
 }
 
 TEST(Auto, TakesTheWinnerAlone) {

@@ -41,6 +41,9 @@ VectorXd variation_of_columns(const field::FieldData& data, std::span<const std:
   return sums * static_cast<double>(cases.size());
 }
 
+/// A member with less costs more to evaluate than it gives.
+constexpr double negligible = 0.1;
+
 /// Weights that minimise w^T G w for sum w = 1 over the chosen members, without the sign condition.
 VectorXd unconstrained(const MatrixXd& gram, const std::vector<Index>& members) {
   const auto n = static_cast<Index>(members.size());
@@ -52,6 +55,20 @@ VectorXd unconstrained(const MatrixXd& gram, const std::vector<Index>& members) 
   part.diagonal().array() += 1e-12 * part.trace() + 1e-300;  // equal candidates share their weight
   const VectorXd solution = part.ldlt().solve(VectorXd::Ones(n));
   return solution / solution.sum();
+}
+
+/// Without the members that have next to no weight.
+VectorXd without_negligible(const VectorXd& weights) {
+  const VectorXd kept = (weights.array() < negligible).select(0, weights);
+  return kept / kept.sum();
+}
+
+/// (1 - share) a + share b, (n, n_columns). @param a, b (n, n_columns), or (n, 1): the same in all columns
+MatrixXd mixed(const MatrixXd& a, const MatrixXd& b, double share) {
+  MatrixXd weights(a.rows(), std::max(a.cols(), b.cols()));
+  for (Index c = 0; c < weights.cols(); ++c)
+    weights.col(c) = without_negligible((1 - share) * a.col(c % a.cols()) + share * b.col(c % b.cols()));
+  return weights;
 }
 
 /// Cross-validated errors of every candidate that ends in finite numbers, and what follows from them.
@@ -87,47 +104,68 @@ class Contest {
     sum_products(all_errors);
   }
 
-  /// Weights of the final model, and its cross-validated error: the best candidate; a blend where it gains; a
-  /// blend for each band of columns where that gains still more.
+  /// Weights of the final model, and its cross-validated error: the best candidate, moved towards a blend and
+  /// then towards a blend for each band of columns as far as those gain.
   [[nodiscard]] AutoFit decide(const AutoOptions& options) const {
     MatrixD total = products_.front();
     for (std::size_t k = 1; k < products_.size(); ++k) total += products_[k];
     const MatrixXd gram = gram_of(total);
     Index best = 0;
-    double squares = gram.diagonal().minCoeff(&best);
-    MatrixXd weights = VectorXd::Unit(gram.rows(), best);
+    gram.diagonal().minCoeff(&best);
+    const VectorXd alone = VectorXd::Unit(gram.rows(), best);
 
     // Weights fitted to the errors that they are judged by flatter a blend; those of the other folds do not.
-    double blended = 0, banded = 0;
+    Answer answer = judged({alone, std::vector<MatrixXd>(products_.size(), alone)});
+    Answer blend{weights_of(gram)}, by_band{band_weights(total, 0, options.band_edges)};
     for (std::size_t k = 0; k < products_.size(); ++k) {
       const MatrixD others = total - products_[k];
-      blended += squares_of(products_[k], weights_of(gram_of(others)));
-      banded += squares_of(products_[k], band_weights(others, folds_[k].size(), options.band_edges));
+      blend.of_folds.emplace_back(weights_of(gram_of(others)));
+      by_band.of_folds.push_back(band_weights(others, folds_[k].size(), options.band_edges));
     }
-    const MatrixXd by_band = band_weights(total, 0, options.band_edges);
-    const double enough = 1 - options.least_gain;
-    if (relative(blended) < enough * relative(squares)) {
-      squares = blended;
-      weights = weights_of(gram);
-    }
-    if (by_band.cols() > 1 && relative(banded) < enough * relative(squares)) {
-      squares = banded;
-      weights = by_band;
-    }
+    const bool has_bands = by_band.weights.cols() > 1;
+    answer = moved(answer, judged(std::move(blend)), options.full_gain);
+    by_band = judged(std::move(by_band));
+    if (has_bands) answer = moved(answer, by_band, options.full_gain);
     AutoFit fit{.candidates = scores_,
-                .nrmse = relative(squares),
-                .nrmse_by_band = by_band.cols() > 1 ? relative(banded) : NAN};
-    for (Index i = 0; i < weights.rows(); ++i) {
+                .nrmse = relative(answer.squares),
+                .nrmse_by_band = has_bands ? relative(by_band.squares) : NAN};
+    for (Index i = 0; i < answer.weights.rows(); ++i) {
       CandidateScore& score = fit.candidates[standing_[static_cast<std::size_t>(i)]];
-      if (weights.row(i).maxCoeff() > 0) score.weights.assign(weights.row(i).begin(), weights.row(i).end());
+      if (answer.weights.row(i).maxCoeff() > 0)
+        score.weights.assign(answer.weights.row(i).begin(), answer.weights.row(i).end());
     }
     return fit;
   }
 
  private:
+  /// Weights from all folds, those from all folds but one, and the squared error of the latter in the folds
+  /// that they have not seen.
+  struct Answer {
+    MatrixXd weights;
+    std::vector<MatrixXd> of_folds = {};
+    double squares = 0;
+  };
+  [[nodiscard]] Answer judged(Answer answer) const {
+    answer.squares = 0;
+    for (std::size_t k = 0; k < products_.size(); ++k)
+      answer.squares += squares_of(products_[k], answer.of_folds[k]);
+    return answer;
+  }
+  /// From one answer towards another: all the way where that lowers the error by full_gain. No jump at any
+  /// gain, so that a last bit, which changes every gain a little, changes the answer a little.
+  [[nodiscard]] Answer moved(const Answer& from, const Answer& to, double full_gain) const {
+    const double share =
+        std::clamp((1 - relative(to.squares) / relative(from.squares)) / full_gain, 0.0, 1.0);
+    if (!(share > 0)) return from;
+    Answer answer{mixed(from.weights, to.weights, share)};
+    for (std::size_t k = 0; k < products_.size(); ++k)
+      answer.of_folds.push_back(mixed(from.of_folds[k], to.of_folds[k], share));
+    return judged(std::move(answer));
+  }
+
   [[nodiscard]] static VectorXd weights_of(const MatrixXd& gram) {
     const std::vector<double> weights = blend_weights(gram);
-    return VectorXd::Map(weights.data(), gram.rows());
+    return without_negligible(VectorXd::Map(weights.data(), gram.rows()));
   }
 
   /// Products of the candidates' errors, summed over the planes and over the cases of each fold:
@@ -221,20 +259,25 @@ double CandidateScore::mean_weight() const {
 }
 
 std::vector<double> blend_weights(const MatrixXd& error_gram) {
-  std::vector<Index> members(static_cast<std::size_t>(error_gram.rows()));
-  for (std::size_t i = 0; i < members.size(); ++i) members[i] = static_cast<Index>(i);
-  // Drop the most negative weight until none is left: for a handful of candidates this is the optimum or next
-  // to it.
-  VectorXd weights = unconstrained(error_gram, members);
-  constexpr double negligible = 0.1;  // a member with less costs more to evaluate than it gives
-  for (Index least = 0; members.size() > 1 && weights.minCoeff(&least) < negligible;) {
-    members.erase(members.begin() + least);
-    weights = unconstrained(error_gram, members);
+  const Index n = error_gram.rows();
+  check(n > 0 && static_cast<double>(n) * negligible < 1, "blend_weights: few enough that one has weight");
+  std::vector<double> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (unsigned set = 1; set < 1U << n; ++set) {
+    std::vector<Index> members;
+    for (Index i = 0; i < n; ++i)
+      if ((set >> i & 1U) != 0) members.push_back(i);
+    const VectorXd weights = unconstrained(error_gram, members);
+    if (weights.minCoeff() < 0) continue;
+    const double squares = weights.dot(error_gram(members, members) * weights);
+    if (!(squares < least)) continue;
+    least = squares;
+    best.assign(static_cast<std::size_t>(n), 0.0);
+    for (std::size_t i = 0; i < members.size(); ++i)
+      best[static_cast<std::size_t>(members[i])] = weights[static_cast<Index>(i)];
   }
-  std::vector<double> all(static_cast<std::size_t>(error_gram.rows()), 0.0);
-  for (std::size_t i = 0; i < members.size(); ++i)
-    all[static_cast<std::size_t>(members[i])] = weights[static_cast<Index>(i)];
-  return all;
+  check(!best.empty(), "blend_weights: finite errors");
+  return best;
 }
 
 double cross_validated_nrmse(const field::FieldData& data, std::span<const std::size_t> cases,

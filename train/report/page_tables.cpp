@@ -238,13 +238,10 @@ std::string choice_section(const AccuracyReport& report) {
   }
   const auto lead = fmt::format(
       "NRMSE on training cases that the fit left out, in groups of neighbouring cases; held-out cases were "
-      "not "
-      "looked at. The dot marks what answers. A blend is taken where it is {0:g} % better than its best "
-      "member, "
-      "and weights of each band of columns' own (last column) where they are {0:g} % better still (-: all "
-      "columns "
-      "lie in one band).",
-      100 * methods::AutoOptions{}.least_gain);
+      "not looked at. The dot marks what answers. A blend is taken as far as it gains, wholly where it is "
+      "{0:g} % better than its best member, and weights of each band of columns' own (last column) in the same "
+      "way (-: all columns lie in one band).",
+      100 * methods::AutoOptions{}.full_gain);
   return section("choice", "What the choice went by", lead,
                  "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +
                      "</tbody></table></div>");

@@ -15,10 +15,11 @@ namespace elrom::methods {
 
 struct AutoOptions {
   std::size_t n_folds = 8;
-  /// A blend whose weights are learned without a fold must be better in it than the best member by this share
-  /// of the member's error, or that member alone is taken: each further member costs time at every
-  /// prediction. Weights for each band must be better by the same share than those for the whole field.
-  double least_gain = 0.01;
+  /// A blend is taken as far as it gains. From this gain on, wholly: the share of the best member's error that
+  /// a blend whose weights are learned without a fold saves in it; half way for half of it, and so on. The same
+  /// for weights of each band against those of the whole field. A limit that a gain must pass would turn the
+  /// model over where a gain lies near it, and another machine's rounding moves gains by a tenth.
+  double full_gain = 0.005;
   /// Limits between bands of columns: mean squared error of the best candidate over the column's variance.
   std::vector<double> band_edges = networks::BandSettings{}.edges;
 };
@@ -47,8 +48,8 @@ struct AutoFit {
                                std::span<const Method* const> candidates, const AutoOptions& options,
                                const FitContext& context);
 
-/// Weights >= 0 with sum 1 that minimise the squared error of sum_i weight_i * prediction_i, from the
-/// candidates' Gram matrix of errors, G_ij = sum of error_i * error_j (n, n).
+/// Weights with sum 1, none negative, that minimise the squared error of sum_i weight_i * prediction_i,
+/// from the candidates' Gram matrix of errors, G_ij = sum of error_i * error_j (n, n).
 [[nodiscard]] std::vector<double> blend_weights(const Eigen::MatrixXd& error_gram);
 
 /// Square root of the sum of squared errors over that of the rows' deviations from their mean.
