@@ -192,7 +192,7 @@ void add_sizes(CostReport& report, const CostOptions& options, Log& log, const s
     const auto curve = learning_curve({.study = options.studies.front(),
                                        .store = options.store,
                                        .method = method,
-                                       .n_points = 3,
+                                       .n_points = 2,  // and a third of the cases
                                        .n_threads = options.n_threads},
                                       log, stop);
     for (const auto& fitted : curve.points) {

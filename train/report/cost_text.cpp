@@ -111,7 +111,7 @@ std::string terminal_table(const CostReport& report) {
   text +=
       "\n  error: mean NRMSE over fields on the held-out cases, and its standard error over them; change: against\n"
       "  the first line; training: processor time; prediction: processor time of opening and one case, median and\n"
-      "  spread of 7; * no other is at least as good in error, training and prediction, and better in one\n\n";
+      "  spread of 7; * no other is at least as good in error, training and prediction, and better in one;\n  'N cases': the fit alone to so many, +- over three draws\n\n";
   for (const auto& sentence : in_words(report)) text += "  " + sentence + '\n';
   return text;
 }
