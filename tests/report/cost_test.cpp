@@ -127,6 +127,26 @@ TEST(Cost, AStudyTellsItsPointsItsPartsAndWhatItWouldCostBare) {
   EXPECT_EQ(report.points.back().train_processor_seconds, 1);
 }
 
+TEST(Cost, SizesAreFittedAloneAndRememberedButStandOnNoFront) {
+  const SmallStudy study(file("sizes-study"));
+  const auto report = cost_report({.studies = {study.folder()}, .sizes = true}, silent_log());
+  base::write_text(file("sizes.json"), to_json(report));
+
+  const auto read = read_cost_report(file("sizes.json"));
+
+  std::vector<std::size_t> linear;
+  for (const auto& point : read.points) {
+    if (point.cases == 0) continue;
+    EXPECT_TRUE(std::isnan(point.predict_ms));
+    EXPECT_FALSE(point.front);
+    EXPECT_TRUE(point.train_processor_seconds);
+    if (point.name.find(": linear, ") != std::string::npos) linear.push_back(point.cases);
+  }
+  EXPECT_THAT(linear, ::testing::ElementsAre(4, SmallStudy::n_training));
+  EXPECT_THAT(in_words(read), ::testing::Contains(::testing::HasSubstr("By the number of cases the kernel")));
+  EXPECT_THAT(terminal_table(read), ::testing::HasSubstr("not timed"));
+}
+
 TEST(Cost, JsonReadsBackTheSame) {
   const CostReport written{.points = {{.name = "a: \"b\"", .error = 0.25, .predict_ms = 3.5, .front = true}},
                            .reference = {},

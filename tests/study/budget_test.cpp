@@ -49,7 +49,9 @@ TEST(Budget, TheDearestLevelThatFitsIsTakenAndNetworksComeAfterAModelThatStands)
   EXPECT_EQ(next_level(levels, 1e6, {}), 4u);
   EXPECT_EQ(next_level(levels, 1.2 * levels[4].seconds, {.settings = {}, .done = 0}), 4u);
   EXPECT_EQ(next_level(levels, 1.2 * levels[5].seconds, {.settings = {}, .done = 4}), 5u);
-  EXPECT_EQ(next_level(levels, 1.1 * levels[5].seconds, {.settings = {}, .done = 4}), std::nullopt);
+  EXPECT_EQ(next_level(levels, 0.6 * levels[5].seconds, {.settings = {}, .done = 4}), 5u) << "it may fit";
+  EXPECT_EQ(next_level(levels, 0.4 * levels[5].seconds, {.settings = {}, .done = 4}), std::nullopt);
+  EXPECT_EQ(next_level(levels, 0.6 * levels[1].seconds, {.settings = {}, .done = 0}), 1u);
   EXPECT_EQ(next_level(levels, 1e6, {.settings = {}, .done = 5}), std::nullopt);
 }
 
@@ -57,7 +59,7 @@ TEST(Budget, WhatFitsGoesByThePaceSoFar) {
   const auto levels = budget_levels({}, model_of(1));
 
   EXPECT_EQ(next_level(levels, 0.6 * levels[5].seconds, {.settings = {}, .done = 4, .pace = 0.5}), 5u);
-  EXPECT_EQ(next_level(levels, 1.2 * levels[5].seconds, {.settings = {}, .done = 4, .pace = 2}),
+  EXPECT_EQ(next_level(levels, 0.6 * levels[5].seconds, {.settings = {}, .done = 4, .pace = 2}),
             std::nullopt);
   EXPECT_EQ(next_level(levels, 1.2 * levels[3].seconds, {.settings = {}, .done = 1}), 3u)
       << "and a dearer one without networks goes before them";

@@ -32,7 +32,7 @@ struct Arguments {
   int threads = 0, points = 5, repeats = 3;
   std::uint64_t seed = 1;
   std::size_t calls = 1'000'000;
-  bool small = false, v1_v2 = false, quiet = false, no_peers = false;
+  bool small = false, v1_v2 = false, quiet = false, no_peers = false, full = false;
 
   [[nodiscard]] int n_threads() const { return threads > 0 ? threads : base::available_threads(); }
   [[nodiscard]] std::optional<fs::path> store_path() const {
@@ -107,6 +107,7 @@ int run_learning_curve(const Arguments& arguments, Log& log) {
 int run_cost(const Arguments& arguments, Log& log) {
   report::CostOptions options{.store = arguments.store_path(),
                               .peers = !arguments.no_peers,
+                              .sizes = arguments.full,
                               .n_threads = arguments.n_threads(),
                               .reference = arguments.reference};
   options.studies.assign(arguments.studies.begin(), arguments.studies.end());
@@ -209,6 +210,9 @@ void add_cost(cli::App& app, Arguments& arguments) {
       ->required();
   command.add_option("--json", arguments.json,
                      "where to write; default FIRST_STUDY/cost.json, which the page then shows");
+  command.add_flag("--full", arguments.full,
+                   "also fits to fewer of the first study's cases, every method that needs no search, three "
+                   "draws each: some minutes");
   command.add_flag("--no-peers", arguments.no_peers, "the studies' own models only (an ablation table)");
   command.add_flag("--small", arguments.small,
                    "accepted for scripts: this command ends within a minute anyway");

@@ -1,5 +1,6 @@
 #include "elrom/report/cost.hpp"
 
+#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
@@ -15,7 +16,9 @@
 #include "elrom/math/statistics.hpp"
 #include "elrom/model/predictor.hpp"
 #include "elrom/report/accuracy.hpp"
+#include "elrom/report/learning_curve.hpp"
 #include "elrom/study/timing.hpp"
+#include "refit.hpp"
 
 namespace elrom::report {
 namespace {
@@ -38,7 +41,7 @@ bool beats(const CostPoint& a, const CostPoint& b) {
 
 void mark_front(std::vector<CostPoint>& points) {
   for (auto& point : points)
-    point.front = std::isfinite(point.error) &&
+    point.front = std::isfinite(point.error) && std::isfinite(point.predict_ms) &&
                   std::none_of(points.begin(), points.end(),
                                [&](const CostPoint& other) { return beats(other, point); });
 }
@@ -184,6 +187,27 @@ void add_points(CostReport& report, const AccuracyReport& accuracy, bool peers) 
   mark_front(report.points);
 }
 
+void add_sizes(CostReport& report, const CostOptions& options, Log& log, const std::stop_token& stop) {
+  for (const auto& method : refittable_methods()) {
+    const auto curve = learning_curve({.study = options.studies.front(),
+                                       .store = options.store,
+                                       .method = method,
+                                       .n_points = 2,  // and a third of the cases
+                                       .n_threads = options.n_threads},
+                                      log, stop);
+    for (const auto& fitted : curve.points) {
+      CostPoint point{.name = fmt::format("{}: {}, {} cases", curve.study, method, fitted.cases),
+                      .error = fitted.error_mean,
+                      .predict_ms = std::nan("")};
+      point.error_deviation = fitted.error_std;
+      point.train_processor_seconds = fitted.processor_seconds;
+      point.train_spread_seconds = fitted.processor_spread;
+      point.cases = fitted.cases;
+      report.points.push_back(std::move(point));
+    }
+  }
+}
+
 CostReport cost_report(const CostOptions& options, Log& log, const std::stop_token& stop) {
   if (options.studies.empty()) throw UsageError("no study to report on; name at least one study directory");
   CostReport report{.points = {}, .reference = options.reference, .parts = {}};
@@ -191,6 +215,7 @@ CostReport cost_report(const CostOptions& options, Log& log, const std::stop_tok
     add_points(report,
                evaluate({.study = study, .store = options.store, .n_threads = options.n_threads}, log, stop),
                options.peers);
+  if (options.sizes) add_sizes(report, options, log, stop);
   return report;
 }
 
@@ -198,15 +223,18 @@ std::string to_json(const CostReport& report) {
   auto root = io::json_head<Json>(io::kinds::cost);
   root["points"] = Json::array();
   for (const auto& point : report.points)
-    root["points"].push_back({{"name", point.name},
-                              {"error", std::isfinite(point.error) ? Json(point.error) : Json()},
-                              {"train_seconds", point.train_seconds ? Json(*point.train_seconds) : Json()},
-                              {"predict_ms", point.predict_ms},
-                              {"front", point.front},
-                              {"error_deviation", point.error_deviation},
-                              {"train_processor_seconds",
-                               point.train_processor_seconds ? Json(*point.train_processor_seconds) : Json()},
-                              {"predict_spread_ms", point.predict_spread_ms}});
+    root["points"].push_back(
+        {{"name", point.name},
+         {"error", std::isfinite(point.error) ? Json(point.error) : Json()},
+         {"train_seconds", point.train_seconds ? Json(*point.train_seconds) : Json()},
+         {"predict_ms", std::isfinite(point.predict_ms) ? Json(point.predict_ms) : Json()},
+         {"front", point.front},
+         {"error_deviation", point.error_deviation},
+         {"train_processor_seconds",
+          point.train_processor_seconds ? Json(*point.train_processor_seconds) : Json()},
+         {"predict_spread_ms", point.predict_spread_ms},
+         {"cases", point.cases},
+         {"train_spread_seconds", point.train_spread_seconds}});
   const auto& reference = report.reference;
   root["reference"] = {{"name", reference.name},
                        {"hours", reference.hours},
@@ -231,8 +259,10 @@ CostReport read_cost_report(const std::filesystem::path& path) {
   try {
     CostReport report;
     for (const auto& node : root.at("points")) {
-      CostPoint point{
-          .name = node.at("name"), .predict_ms = node.at("predict_ms"), .front = node.at("front")};
+      CostPoint point{.name = node.at("name"), .front = node.at("front")};
+      point.predict_ms = node.at("predict_ms").is_null() ? std::nan("") : node.at("predict_ms").get<double>();
+      point.cases = node.value("cases", std::size_t{0});
+      point.train_spread_seconds = node.value("train_spread_seconds", 0.0);
       point.error = node.at("error").is_null() ? std::numeric_limits<double>::quiet_NaN()
                                                : node.at("error").get<double>();
       if (!node.at("train_seconds").is_null()) point.train_seconds = node.at("train_seconds").get<double>();

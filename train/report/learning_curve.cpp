@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <numeric>
 
 #include "elrom/base/error.hpp"
@@ -84,10 +85,11 @@ double held_out_nrmse(const Material& material, const model::FieldModel& model, 
   return sums.nrmse();
 }
 
-/// Errors of one field, (sizes, draws).
+/// Errors of one field, (sizes, draws). @param seconds processor time of the fits is added, (sizes, draws)
 MatrixD field_errors(const Material& material, const field::FieldInfo& info, const methods::Method& method,
                      const std::vector<std::size_t>& sizes,
-                     const std::vector<std::vector<std::size_t>>& draws, const methods::FitContext& context) {
+                     const std::vector<std::vector<std::size_t>>& draws, const methods::FitContext& context,
+                     MatrixD& seconds) {
   field::FieldData data{&material.cases, info, material.store.read(info.name, material.building)};
   const auto truth = material.store.read(info.name, material.scored);
   const auto statistics = training_statistics(data.values, material.cases.mesh.n_columns);
@@ -95,22 +97,27 @@ MatrixD field_errors(const Material& material, const field::FieldInfo& info, con
   for (std::size_t s = 0; s < sizes.size(); ++s)
     for (std::size_t d = 0; d < draws.size(); ++d) {
       const auto i = static_cast<Eigen::Index>(s), j = static_cast<Eigen::Index>(d);
-      if (sizes[s] == material.building.size() && d > 0) {
-        errors(i, j) = errors(i, 0);  // all cases: every draw is the same
-        continue;
-      }
       if (context.stop.stop_requested()) throw Interrupted("stopped before the learning curve was complete");
       std::vector<std::size_t> rows(draws[d].begin(),
                                     draws[d].begin() + static_cast<std::ptrdiff_t>(sizes[s]));
       std::sort(rows.begin(), rows.end());
-      errors(i, j) = held_out_nrmse(material, *method.fit(data, rows, context), truth, statistics);
+      const auto begin = std::clock();
+      const auto model = method.fit(data, rows, context);
+      seconds(i, j) += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+      errors(i, j) = held_out_nrmse(material, *model, truth, statistics);
     }
   return errors;
 }
 
+/// Standard deviation; of one value 0.
+double scatter(const Eigen::RowVectorXd& values) {
+  const auto n = static_cast<double>(values.size());
+  return n > 1 ? std::sqrt((values.array() - values.mean()).square().sum() / (n - 1)) : 0;
+}
+
 // Fields down, one (sizes, draws) table each, to points with mean and scatter over draws.
 std::vector<LearningPoint> points_of(const std::vector<std::size_t>& sizes,
-                                     const std::map<std::string, MatrixD>& errors) {
+                                     const std::map<std::string, MatrixD>& errors, const MatrixD& seconds) {
   std::vector<LearningPoint> points;
   for (std::size_t s = 0; s < sizes.size(); ++s) {
     LearningPoint point{.cases = sizes[s]};
@@ -121,10 +128,9 @@ std::vector<LearningPoint> points_of(const std::vector<std::size_t>& sizes,
       over_fields += table.row(row) / static_cast<double>(errors.size());
     }
     point.error_mean = over_fields.mean();
-    const auto n = over_fields.size();
-    if (n > 1)
-      point.error_std =
-          std::sqrt((over_fields.array() - point.error_mean).square().sum() / static_cast<double>(n - 1));
+    point.error_std = scatter(over_fields);
+    point.processor_seconds = seconds.row(row).mean();
+    point.processor_spread = scatter(seconds.row(row));
     points.push_back(std::move(point));
   }
   return points;
@@ -149,18 +155,20 @@ LearningCurve learning_curve(const LearningCurveOptions& options, Log& log, cons
   const methods::FitContext context{
       .seed = base::Seed(options.seed), .n_threads = options.n_threads, .log = &silent_log(), .stop = stop};
   std::map<std::string, MatrixD> errors;
+  MatrixD seconds =
+      MatrixD::Zero(static_cast<Eigen::Index>(sizes.size()), static_cast<Eigen::Index>(draws.size()));
   for (const auto& info : fields) {
     log.progress({.task = "learning curve",
                   .done = static_cast<std::int64_t>(errors.size()),
                   .total = static_cast<std::int64_t>(fields.size()),
                   .unit = "fields"});
-    errors[info.name] = field_errors(material, info, *method, sizes, draws, context);
+    errors[info.name] = field_errors(material, info, *method, sizes, draws, context, seconds);
   }
   log.progress({.task = "learning curve",
                 .done = static_cast<std::int64_t>(fields.size()),
                 .total = static_cast<std::int64_t>(fields.size()),
                 .unit = "fields"});
-  curve.points = points_of(sizes, errors);
+  curve.points = points_of(sizes, errors, seconds);
   std::vector<double> n, e;
   for (const auto& point : curve.points) {
     n.push_back(static_cast<double>(point.cases));

@@ -59,6 +59,7 @@ std::string cost_chart(const CostReport& cost, const std::string& label,
     if (!std::isfinite(times[i]) || !std::isfinite(errors[i])) continue;
     const auto& point = cost.points[i];
     chart.points(std::span(&times[i], 1), std::span(&errors[i], 1), point.front ? "s0" : "s1", point.name);
+    if (point.cases > 0) continue;  // named when pointed at: there are many
     const auto colon = point.name.rfind(": ");
     chart.label(times[i], errors[i],
                 method_label(colon == std::string::npos ? point.name : point.name.substr(colon + 2)));
@@ -232,11 +233,10 @@ std::string cost_section(const CostReport& cost) {
   for (const auto& sentence : in_words(cost)) words += "<li>" + escape(sentence) + "</li>";
   for (const auto& point : cost.points)
     body += fmt::format(
-        "<tr><td>{}</td><td>{} &plusmn; {:.3f}</td><td>{}</td><td>{:.1f} &plusmn; {:.1f} ms</td><td "
+        "<tr><td>{}</td><td>{} &plusmn; {:.3f}</td><td>{}</td><td>{}</td><td "
         "style=\"text-align:left\">{}</td></tr>",
-        escape(point.name), score_text(point.error, 4), point.error_deviation,
-        std::isfinite(training_of(point)) ? base::duration(training_of(point)) : "not kept", point.predict_ms,
-        point.predict_spread_ms, point.front ? "on the front" : "");
+        escape(point.name), score_text(point.error, 4), point.error_deviation, training_text(point),
+        prediction_text(point), point.front ? "on the front" : "");
   const double core_seconds = 3600 * cost.reference.hours * cost.reference.cores;
   const double none = std::nan("");
   return section(

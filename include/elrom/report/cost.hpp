@@ -20,11 +20,13 @@ struct CostPoint {
   std::string name;                     ///< "study" or "study: peer"
   double error = 0;                     ///< mean NRMSE over fields on the held-out cases
   std::optional<double> train_seconds;  ///< as the study measured it; none: not kept
-  double predict_ms = 0;                ///< all fields of one case, opening included; median of the repeats
-  bool front = false;                   ///< no other point is at least as good in all and better in one
-  double error_deviation = 0;           ///< standard error over the held-out cases (jackknife); 0: not known
+  double predict_ms = 0;       ///< all fields of one case, opening included; median of the repeats; NaN: no
+  bool front = false;          ///< no other point is at least as good in all and better in one
+  double error_deviation = 0;  ///< standard error over the held-out cases (jackknife); 0: not known
   std::optional<double> train_processor_seconds;  ///< none: not kept
   double predict_spread_ms = 0;                   ///< robust standard deviation of the repeats
+  std::size_t cases = 0;                          ///< a method's fit alone to so many cases; 0: a bundle
+  double train_spread_seconds = 0;  ///< of the repeats, as many draws of the cases; 0: not known
 };
 
 /// What computes the cases, for the same axes.
@@ -48,6 +50,8 @@ struct CostOptions {
   std::vector<std::filesystem::path> studies;
   std::optional<std::filesystem::path> store;
   bool peers = true;  ///< the studies' peers too
+  bool sizes =
+      false;  ///< and what fits without networks to fewer of the first study's cases cost: add_sizes()
   int n_threads = 1;
   Reference reference;  ///< error and n_cases are filled in
 };
@@ -63,6 +67,9 @@ struct AccuracyReport;
 /// Adds what one evaluated study tells. Opens and predicts each bundle a few times: some seconds.
 void add_points(CostReport& report, const AccuracyReport& accuracy, bool peers);
 
+/// Every method that needs no search, fitted to a few sizes of a study's cases, three draws each. Half a minute.
+void add_sizes(CostReport& report, const CostOptions& options, Log& log, const std::stop_token& stop = {});
+
 /// What follows from the points, a sentence each: the front, what each costly method buys, and the reference.
 [[nodiscard]] std::vector<std::string> in_words(const CostReport& report);
 
@@ -76,5 +83,8 @@ void mark_front(std::vector<CostPoint>& points);
 [[nodiscard]] std::string to_json(const CostReport& report);
 [[nodiscard]] CostReport read_cost_report(const std::filesystem::path& path);
 [[nodiscard]] std::string terminal_table(const CostReport& report);
+/// "1 min 38 s", "2.1 s +- 0.2 s", "12 s (wall)", "not kept"; "17.9 +- 0.1 ms", "not timed".
+[[nodiscard]] std::string training_text(const CostPoint& point);
+[[nodiscard]] std::string prediction_text(const CostPoint& point);
 
 }  // namespace elrom::report

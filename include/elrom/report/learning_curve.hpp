@@ -34,6 +34,8 @@ struct LearningPoint {
   std::size_t cases = 0;
   double error_mean = 0, error_std = 0;       ///< over the draws
   std::map<std::string, double> field_error;  ///< mean over the draws, by field
+  /// Of the fits of all fields, all threads: mean and standard deviation over the draws; not in files.
+  double processor_seconds = 0, processor_spread = 0;
 };
 
 /// error(n) = floor + scale * n^-rate, by least squares; the rate within its range, floor and scale are >= 0.
