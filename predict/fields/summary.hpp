@@ -15,7 +15,8 @@ struct CaseResult {
   model::Verdict verdict = model::Verdict::inside;
   std::string reason;
   double distance = 0;
-  std::vector<double> figures;  ///< empty: not predicted (--strict)
+  std::vector<double> figures;             ///< empty: not predicted (--strict)
+  std::vector<std::string> unusual_audit;  ///< with --audit: what training cases do not show
 };
 
 /// What the writers below share; everything is borrowed.
@@ -26,7 +27,7 @@ struct Summary {
   std::span<const CaseResult> results;  //!< (list.cases)
 };
 
-/// CSV: case, base, verdict, distance, reason, what was swept in the user's unit, figures, and with
+/// CSV: case, base, verdict, distance, reason (with what is unusual of an audit), what was swept in the user's unit, figures, and with
 /// bases the change of each figure against the base's. Empty: not known.
 [[nodiscard]] std::string summary_table(const Summary& summary);
 

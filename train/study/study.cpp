@@ -268,9 +268,13 @@ struct Study::Impl {
             .settings_digest = settings_digest(name)};
   }
 
-  [[nodiscard]] Lineage lineage() const {
-    Lineage lineage{
-        .case_digests = {}, .settings = settings_text(settings), .date = settings.date, .parent = {}};
+  Lineage lineage() {
+    if (!usual_audit) usual_audit = usual_audit_of(store, rows.building);
+    Lineage lineage{.case_digests = {},
+                    .settings = settings_text(settings),
+                    .date = settings.date,
+                    .parent = {},
+                    .usual_audit = *usual_audit};
     for (const auto row : rows.building) lineage.case_digests.push_back(store.digest({&row, 1}));
     return lineage;
   }
@@ -332,7 +336,8 @@ struct Study::Impl {
   HeldOut rows;
   Promotion promotion;
   bool retraining = false;
-  std::vector<std::size_t> earlier_rows;  // of `cases`; retraining only, as is `earlier`
+  std::optional<std::vector<model::UsualFigure>> usual_audit;  // of the building cases, when first asked for
+  std::vector<std::size_t> earlier_rows;                       // of `cases`; retraining only, as is `earlier`
   std::optional<EarlierModel> earlier;
   field::CaseSet cases, plain_cases;
   std::vector<field::FieldInfo> fields;
