@@ -47,7 +47,7 @@ std::vector<UsualFigure> usual_figures(std::span<const Audit> cases) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto& one = statistics[i];
     if (one.count() >= fewest_cases)
-      usual.push_back({names[i].name, one.mean(), std::sqrt(one.variance()), one.count()});
+      usual.push_back({names[i].name, one.mean(), one.deviation(), one.count()});
   }
   return usual;
 }
