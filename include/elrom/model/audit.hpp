@@ -7,11 +7,11 @@
 // flux is the sum over a plane's cells of cell values, so the product of time averages stands for the average
 // of the product.
 //
-// What is usual, the training cases say: their own figures, mean and scatter (UsualFigure), are in the bundle.
+// What is usual, the training cases say: their figures' mean and scatter (UsualFigure) are in the bundle.
 //
-// Non-goals: judging by physics. EL3D's own averages hold 94 to 101 % of the inventory and carry 90 to 103 % of the
-// inlets' flow through the planes clear of openings (held-out shipped cases); compare a prediction with a
-// case. For the same reason a repaired prediction conserves, but does not come nearer to EL3D's averages.
+// Non-goals: judging by physics. EL3D's own averages hold 94 to 101 % of the inventory and carry 90 to 103 %
+// of the inlets' flow through the planes clear of openings (held-out shipped cases); compare a prediction
+// with a case. For the same reason a repaired prediction conserves, but comes no nearer to EL3D's averages.
 //
 // Thread rule: pure functions.
 
