@@ -27,8 +27,8 @@ struct Summary {
   std::span<const CaseResult> results;  //!< (list.cases)
 };
 
-/// CSV: case, base, verdict, distance, reason (with what is unusual of an audit), what was swept in the user's
-/// unit, figures, and with bases the change of each figure against the base's. Empty: not known.
+/// CSV: case, base, verdict, distance, reason (with what is unusual of an audit), what was swept in its
+/// user's unit, figures, and with bases the change of each figure against the base's. Empty: not known.
 [[nodiscard]] std::string summary_table(const Summary& summary);
 
 /// A page for a browser, without a network: one chart a figure of `curves` and a swept input, a line for each

@@ -111,7 +111,7 @@ TEST_F(ImportChecked, ComparesNewCasesWithThoseOfTheStore) {
               ThrowsMessage<InputError>(HasSubstr("train_004, pressure")));
 }
 
-// Once one of each dozen was told to have its solids' velocity in km/h: few cases tell little of what is usual.
+// Once one of each dozen was told to have its solids' velocity in km/h: few cases tell little.
 TEST_F(ImportChecked, ADozenSoundCasesOnACoarseMeshRaiseNoAlarm) {
   using Numbers = std::vector<const char*>;
   for (const auto& numbers :
