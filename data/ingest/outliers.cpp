@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "elrom/math/linear_algebra.hpp"
+#include "elrom/model/operating_line.hpp"
 #include "robust.hpp"
 
 namespace elrom::ingest {
@@ -14,9 +15,9 @@ constexpr double twin_distance = 0.02;  // of the typical distance between cases
 constexpr double infinitely_far = 1e6;  // where all other cases are equal
 constexpr std::size_t most_pairs = 3000;
 
-/// In units of the usual distance, which is itself uncertain when the cases are few. Healthy real cases stay
-/// below 1.9 among 73 (see the tests), and below 4 in growing stores of 215 (bench-door).
-double far_distance(std::size_t n_cases) { return 4.5 + 30.0 / static_cast<double>(n_cases); }
+/// In units of the usual distance. Healthy real cases stay below 1.9 among 73 (see the tests), and below 4.2
+/// in stores of more than 25.
+double far_distance(std::size_t n_cases) { return 4.5 * model::growth_for_few(n_cases); }
 
 std::vector<double> list_of(const Eigen::VectorXd& values) {
   return {values.data(), values.data() + values.size()};

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "elrom/base/text.hpp"
+#include "elrom/model/operating_line.hpp"
 #include "robust.hpp"
 
 namespace elrom::ingest {
@@ -20,7 +21,7 @@ constexpr double by_median = 1.4826, by_tail = 0.7803;
 constexpr auto all_checks = {&read_mesh_cover, &read_flow_direction, &read_gas_balance,
                              &read_solids_inventory, &read_roughness};
 
-double far(std::size_t n_others) { return 7 + 60.0 / static_cast<double>(n_others); }
+double far(std::size_t n_others) { return 7 * model::growth_for_few(n_others); }
 
 double scaled(const Reading& reading) {
   return reading.logarithmic ? std::log(reading.value) : reading.value;

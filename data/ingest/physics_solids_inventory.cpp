@@ -4,6 +4,13 @@
 #include "physics_checks.hpp"
 
 namespace elrom::ingest {
+namespace {
+
+// Solids that leave come back: the averages of the 64 shipped training cases hold 91 to 103 % of the
+// inventory, on the CFD's mesh or on another. Twice as far off is wrong.
+constexpr double least_held = 0.8, most_held = 1.25;
+
+}  // namespace
 
 std::vector<Reading> read_solids_inventory(const PhysicsView& view) {
   std::vector<Reading> readings;
@@ -15,8 +22,8 @@ std::vector<Reading> read_solids_inventory(const PhysicsView& view) {
                         .quantity = "solid_volume_fraction",
                         .what = "solids in the fields over the inventory",
                         .value = *audit.solids_kg / *audit.inventory_kg,
-                        .low = 0.7,
-                        .high = 1.3,
+                        .low = least_held,
+                        .high = most_held,
                         .least_spread = 0.02});
   }
   if (audit.pressure_drop && audit.solids_weight) {

@@ -16,8 +16,9 @@ namespace elrom::ingest {
 namespace {
 
 constexpr std::size_t fewest_cases = 8;  // to compare cases with each other
-// In units of the features' usual scatter (the 90th percentile of the others' residuals):
-constexpr double suspicious_residual = 2.0;  // no case of a healthy set lies so far out ...
+// In units of the features' usual scatter (the 90th percentile of the others' residuals). What is far grows
+// where few cases tell the scatter:
+constexpr double suspicious_residual = 2.0;  // hardly a case of a healthy set lies so far out ...
 constexpr double healthy_residual = 1.7;     // ... and nearly all within this
 constexpr double wild_residual = 8.0;        // of a measure of the fields: told even when no unit explains it
 constexpr double least_scatter = 0.02;       // 2 %, where cases agree almost exactly
@@ -132,15 +133,14 @@ std::size_t farthest(const std::vector<double>& residuals) {
 /// The correction that brings the case best back among the others, if one does.
 const Correction* best_correction(const Usual& usual, const CaseFeatures& features, const CaseSummary& one,
                                   const std::vector<Correction>& corrections,
-                                  const std::vector<double>& residuals) {
+                                  const std::vector<double>& residuals, double suspicious) {
   const double before = sum_of_squares(residuals);
   const Correction* best = nullptr;
   double best_sum = before - least_gain;
   for (const auto& correction : corrections) {
     const auto touched = features.touched(correction);
-    const bool suspected = std::any_of(touched.begin(), touched.end(), [&](std::size_t k) {
-      return std::abs(residuals[k]) > suspicious_residual;
-    });
+    const bool suspected = std::any_of(touched.begin(), touched.end(),
+                                       [&](std::size_t k) { return std::abs(residuals[k]) > suspicious; });
     if (!suspected) continue;
     const auto after = usual.residuals(one, &correction);
     const bool healthy = std::all_of(touched.begin(), touched.end(),
@@ -158,10 +158,12 @@ std::vector<UnitMistake> compare_with_others(std::span<const CaseSummary> cases,
                                              const std::vector<Correction>& corrections) {
   std::vector<UnitMistake> mistakes;
   const Usual usual(features, cases);
+  const double growth = model::growth_for_few(cases.size());
+  const double suspicious = growth * suspicious_residual, wild = growth * wild_residual;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const auto residuals = usual.residuals(cases[i], nullptr);
-    if (std::abs(residuals[farthest(residuals)]) <= suspicious_residual) continue;
-    if (const auto* cause = best_correction(usual, features, cases[i], corrections, residuals)) {
+    if (std::abs(residuals[farthest(residuals)]) <= suspicious) continue;
+    if (const auto* cause = best_correction(usual, features, cases[i], corrections, residuals, suspicious)) {
       mistakes.push_back({i, cause->quantity, cause->description, true});
       continue;
     }
@@ -169,7 +171,7 @@ std::vector<UnitMistake> compare_with_others(std::span<const CaseSummary> cases,
     auto of_fields = residuals;
     std::fill_n(of_fields.begin(), cases[i].schema.size(), 0.0);
     const auto worst = farthest(of_fields);
-    if (std::abs(of_fields[worst]) > wild_residual) {
+    if (std::abs(of_fields[worst]) > wild) {
       mistakes.push_back({i, features.infos()[worst].name,
                           "far from the other cases at this load (" +
                               base::rounded(std::abs(of_fields[worst]), 2) + " times their usual scatter)",

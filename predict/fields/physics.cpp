@@ -9,8 +9,6 @@ namespace elrom::fields {
 namespace {
 
 constexpr const char* repaired_fields[] = {"solid_volume_fraction", "gas_velocity_z"};
-constexpr const char* audited_fields[] = {"solid_volume_fraction", "gas_velocity_z", "pressure",
-                                          "solid_velocity_z"};
 
 std::string option_of(const Arguments& arguments) { return arguments.audit ? "--audit" : "--conserve"; }
 
@@ -29,7 +27,7 @@ void check_cells(const Arguments& arguments, const model::BundleReader& bundle, 
 void check_fields(const Arguments& arguments, const model::BundleReader& bundle) {
   std::vector<std::string> in_bundle;
   for (const auto& info : bundle.info().fields) in_bundle.push_back(info.name);
-  const auto needed = arguments.audit ? std::span<const char* const>(audited_fields)
+  const auto needed = arguments.audit ? std::span<const char* const>(model::audited_fields)
                                       : std::span<const char* const>(repaired_fields);
   for (const std::string name : needed) {
     const std::string what = option_of(arguments) + " needs field '" + name + "'";
@@ -84,6 +82,7 @@ Physics::Physics(const Arguments& arguments, const model::BundleReader& bundle, 
   settings_ = model::audit_settings(furnace_of(arguments, bundle));
   mesh_ = bundle.mesh();
   schema_ = bundle.info().schema;
+  usual_ = bundle.info().usual_audit;
   fields_ = field::keep_fields(bundle.info().fields, arguments.fields);
 }
 
@@ -96,7 +95,10 @@ PhysicsResult Physics::apply(const field::CaseInputs& inputs, std::span<float> v
   } catch (const NumericalError& error) {
     throw NumericalError("case " + inputs.name + ": " + error.what());
   }
-  if (audit_) result.audit = model::audit(view, settings_);
+  if (audit_) {
+    result.audit = model::audit(view, settings_);
+    result.audit->unusual = model::unusual_figures(*result.audit, usual_);
+  }
   return result;
 }
 

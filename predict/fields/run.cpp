@@ -168,7 +168,7 @@ void CaseRunner::predict(std::size_t i, Desk& desk, int n_threads) {
   const auto& inputs = opened_.list.cases[i];
   const auto assessment = opened_.predictor.guard().assess(inputs.values);
   auto& result = results_[i];
-  result = {assessment.verdict, assessment.reason, assessment.distance, {}};
+  result = {assessment.verdict, assessment.reason, assessment.distance, {}, {}};
   std::string line =
       fmt::format("{}: {}, {}", inputs.name, model::name_of(assessment.verdict), assessment.reason);
   if (is_left_out(assessment)) {
@@ -182,6 +182,7 @@ void CaseRunner::predict(std::size_t i, Desk& desk, int n_threads) {
     return HdfFile::Begun{std::move(file), model::PredictionWriter(opened_.frame, inputs, assessment, path)};
   });
   const auto prediction = compute(inputs, assessment, hdf, desk, n_threads);
+  if (desk.physics.audit) result.unusual_audit = desk.physics.audit->unusual;
   if (figures_) result.figures = figures_->of(inputs, desk.values);
   desk.compute += lap.lap();
   std::string said;
@@ -202,6 +203,11 @@ void CaseRunner::finish() const {
                n_with(model::Verdict::outside), arguments_.to_standard_output() ? "" : " -> ",
                arguments_.to_standard_output() ? "" : arguments_.output);
   }
+  const auto n_unusual =
+      std::ranges::count_if(results_, [](const CaseResult& result) { return !result.unusual_audit.empty(); });
+  if (n_unusual > 0)
+    fmt::print(stderr, "warning: {} of {} cases: mass or pressure unlike the training cases'\n", n_unusual,
+               n_cases());
   if (!figures_) return;
   const Summary summary{opened_.predictor.bundle().info().schema, opened_.list, figures_->names(), results_};
   const auto put = [&](const std::filesystem::path& path, const char* what, const auto& make) {

@@ -24,6 +24,12 @@ struct Pair {
   }
 };
 
+std::vector<std::string> all_reasons(const CaseResult& result) {
+  auto reasons = result.unusual_audit;
+  reasons.insert(reasons.begin(), result.reason);
+  return reasons;
+}
+
 }  // namespace
 
 std::string summary_table(const Summary& summary) {
@@ -44,7 +50,7 @@ std::string summary_table(const Summary& summary) {
     const Pair pair{results[k], results[i_base]};
     std::vector<std::string> row{io::csv_cell(list.cases[k].name), io::csv_cell(list.cases[i_base].name),
                                  std::string(model::name_of(pair.own.verdict)), cell(pair.own.distance),
-                                 io::csv_cell(pair.own.reason)};
+                                 io::csv_cell(base::join(all_reasons(pair.own), "; "))};
     for (std::size_t s = 0; s < list.swept.size(); ++s)
       row.push_back(cell(units[s]->from_si(list.cases[k].values[list.swept[s]])));
     for (std::size_t i = 0; i < names.size(); ++i) row.push_back(pair.figure(i));

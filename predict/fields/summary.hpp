@@ -15,7 +15,8 @@ struct CaseResult {
   model::Verdict verdict = model::Verdict::inside;
   std::string reason;
   double distance = 0;
-  std::vector<double> figures;  ///< empty: not predicted (--strict)
+  std::vector<double> figures;             ///< empty: not predicted (--strict)
+  std::vector<std::string> unusual_audit;  ///< with --audit: what training cases do not show
 };
 
 /// What the writers below share; everything is borrowed.
@@ -26,8 +27,8 @@ struct Summary {
   std::span<const CaseResult> results;  //!< (list.cases)
 };
 
-/// CSV: case, base, verdict, distance, reason, what was swept in the user's unit, figures, and with
-/// bases the change of each figure against the base's. Empty: not known.
+/// CSV: case, base, verdict, distance, reason (with what is unusual of an audit), what was swept in its
+/// user's unit, figures, and with bases the change of each figure against the base's. Empty: not known.
 [[nodiscard]] std::string summary_table(const Summary& summary);
 
 /// A page for a browser, without a network: one chart a figure of `curves` and a swept input, a line for each

@@ -79,8 +79,8 @@ py::dict dict_of(const model::Assessment& assessment) {
   for (const auto& one : assessment.nearest) nearest.append(py::make_tuple(one.name, one.load, one.distance));
   return py::dict(py::arg("verdict") = std::string(model::name_of(assessment.verdict)),
                   py::arg("reason") = assessment.reason, py::arg("out_of_range") = assessment.out_of_range,
-                  py::arg("distance") = assessment.distance, py::arg("p_value") = assessment.p_value,
-                  py::arg("nearest") = nearest);
+                  py::arg("unusual") = assessment.unusual, py::arg("distance") = assessment.distance,
+                  py::arg("p_value") = assessment.p_value, py::arg("nearest") = nearest);
 }
 
 py::object change_of(const std::optional<model::ConservationChange>& change) {

@@ -195,6 +195,7 @@ std::string to_text(const Audit& audit) {
   if (audit.pressure_drop && audit.solids_weight)
     text += fmt::format("pressure drop       {:>9.0f} Pa; weight of the solids {:.0f} Pa\n",
                         *audit.pressure_drop, *audit.solids_weight);
+  for (const auto& figure : audit.unusual) text += "unusual             " + figure + '\n';
   if (audit.within_bounds())
     return text + "bounds              every field is finite and inside its physical bounds\n";
   for (const auto& b : audit.bounds)
@@ -214,6 +215,7 @@ std::string to_json(const Audit& audit) {
   root["pressure_drop_Pa"] = json_or_null(audit.pressure_drop);
   root["solids_weight_Pa"] = json_or_null(audit.solids_weight);
   root["within_bounds"] = audit.within_bounds();
+  root["unusual"] = audit.unusual;
   for (const auto& plane : audit.planes)
     root["planes"].push_back({{"height_m", plane.height},
                               {"area_m2", plane.area},

@@ -64,6 +64,18 @@ field::InputInfo input_from_json(const Json& json) {
   return input;
 }
 
+Json to_json(const UsualFigure& figure) {
+  return {{"name", figure.name},
+          {"mean", figure.mean},
+          {"deviation", figure.deviation},
+          {"n_cases", figure.n_cases}};
+}
+
+UsualFigure figure_from_json(const Json& json) {
+  return {json.at("name").get<std::string>(), json.at("mean").get<double>(),
+          json.at("deviation").get<double>(), whole_number<std::size_t>(json.at("n_cases"))};
+}
+
 }  // namespace
 
 std::string to_json(const BundleDescription& description) {
@@ -74,6 +86,7 @@ std::string to_json(const BundleDescription& description) {
             {"accuracy", info.accuracy_json}};
   if (!info.case_digests.empty()) json["case_digests"] = info.case_digests;
   if (!info.settings.empty()) json["settings"] = info.settings;
+  for (const auto& figure : info.usual_audit) json["usual_audit"].push_back(to_json(figure));
   json["fields"] = Json::array();
   for (const auto& field : info.fields) json["fields"].push_back(to_json(field));
   json["inputs"] = Json::array();
@@ -95,6 +108,8 @@ BundleDescription bundle_description(const std::string& text, const std::string&
     info.accuracy_json = json.at("accuracy").get<std::string>();
     info.case_digests = json.value("case_digests", std::vector<std::string>());
     info.settings = json.value("settings", std::string());
+    if (json.contains("usual_audit"))
+      for (const auto& figure : json.at("usual_audit")) info.usual_audit.push_back(figure_from_json(figure));
     if (!info.case_digests.empty() && info.case_digests.size() != info.cases.size()) {
       throw InputError({.what = "broken bundle description",
                         .where = where,

@@ -22,6 +22,8 @@ constexpr double least_deviation = 1e-2;  // of an input's scatter: inputs that 
 constexpr double least_growth = 0.3;      // far along the line the deviation stays above this share
 constexpr double usual_share = 0.025, most_share = 0.05;
 constexpr double wanted_limit = 2.3;  // an input 3 deviations off is then found nine times in ten
+constexpr double far_beyond = 1.6;    // times the limit
+constexpr double few_cases = 20;      // so many, and a limit must be twice as wide
 constexpr double never = std::numeric_limits<double>::infinity();
 
 /// One factor for the covariance of standardised inputs.
@@ -128,6 +130,11 @@ struct OperatingLine::Learned {
   }
 };
 
+double growth_for_few(std::size_t n_cases) {
+  const double few = few_cases / static_cast<double>(n_cases);
+  return 1 + few * few;
+}
+
 double UsualInput::distance(double given) const {
   return std::isfinite(deviation) ? std::abs(given - value) / deviation : 0;
 }
@@ -165,6 +172,11 @@ OperatingLine::OperatingLine(const MatrixD& inputs) {
     farthest.push_back(left.row(i).cwiseQuotient(deviation).cwiseAbs().maxCoeff());
   }
   limit_ = limit_of(std::move(farthest));
+}
+
+double OperatingLine::far_limit() const {
+  return knows() ? far_beyond * growth_for_few(static_cast<std::size_t>(learned_->left.rows())) * limit_
+                 : never;
 }
 
 std::vector<UsualInput> OperatingLine::usual(std::span<const double> inputs) const {

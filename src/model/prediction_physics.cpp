@@ -63,6 +63,7 @@ void write_audit(const Audit& audit, const io::Hdf5Group& parent) {
   set_known(group, "pressure_drop_Pa", audit.pressure_drop);
   set_known(group, "solids_weight_Pa", audit.solids_weight);
   group.set_integer("within_bounds", audit.within_bounds() ? 1 : 0);
+  if (!audit.unusual.empty()) group.set_texts("unusual", audit.unusual);
   write_planes(audit, group.create_group("planes"));
   write_bounds(audit, group.create_group("bounds"));
 }

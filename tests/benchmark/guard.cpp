@@ -141,10 +141,27 @@ Json judge(const Design& design, const std::string& name, bool small) {
   return {held_out.json(title + ", held out"), left_out.json(title + ", left out one by one")};
 }
 
+/// Training cases that the guard has never met, by a guard of the folders before.
+Json judge_unseen(const Design& design, const Design& unseen, const std::string& folder) {
+  std::vector<UsualAtLoad> usual;
+  for (std::size_t i = 0; i < design.schema.size(); ++i) usual.push_back(usual_at_load(design, i));
+  const auto guard = guard_of(design, design.training.size());
+  Tally tally;
+  for (const auto& one : unseen.training) tally.judge(guard, one, usual);
+  const auto title = fmt::format("{} by the {} training cases before it", folder, design.training.size());
+  tally.print(title);
+  return tally.json(title);
+}
+
 Json measure(const Options& options) {
   Json sets = Json::array();
   Design all;
   for (const auto& folder : options.folders) {
+    if (!all.training.empty()) {
+      Design unseen;
+      add_cases(unseen, folder);
+      sets.push_back(judge_unseen(all, unseen, folder));
+    }
     add_cases(all, folder);
     const auto name = &folder == &options.folders.front() ? folder : "with " + folder;
     for (auto& set : judge(all, name, options.small)) sets.push_back(std::move(set));

@@ -37,6 +37,8 @@ class PhysicsTest : public ::testing::Test {
     bundle.write(folder_ / "no_furnace.elrom");
     bundle.furnace = field::read_furnace(ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.toml");
     bundle.write(folder_ / "model.elrom");
+    bundle.info.usual_audit = {{"solids over inventory", 1, 0.001, 64}};
+    bundle.write(folder_ / "strict.elrom");
     for (auto& opening : bundle.furnace->openings)
       if (opening.inputs == "burner_*") opening.low_m = opening.high_m = 30;
     bundle.write(folder_ / "lifted.elrom");
@@ -195,6 +197,22 @@ TEST_F(PhysicsTest, MoreSolidsThanTheFurnaceHoldsIsAnArithmeticError) {
 
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.text, HasSubstr("case case: no solid volume fraction"));
+}
+
+TEST_F(PhysicsTest, AnAuditBeyondTheTrainingCasesScatterIsAWarning) {
+  const auto outcome =
+      predict("--audit --summary '" + (folder_ / "summary.csv").string() + "'", "strict.elrom");
+
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_THAT(outcome.text, HasSubstr("warning: 1 of 1 cases"));
+  EXPECT_THAT(outcome.text, HasSubstr("1.00 +- 0.001 in 64 training cases"));
+  EXPECT_THAT(result().group("elrom/audit").texts("unusual"),
+              ::testing::ElementsAre(HasSubstr("solids over inventory is")));
+  EXPECT_THAT(test::read_bytes(folder_ / "summary.csv"), HasSubstr("solids over inventory is"));
+  // Repaired, it holds the inventory; and a bundle of before does not say what is usual.
+  EXPECT_THAT(predict("--audit --conserve", "strict.elrom").text, Not(HasSubstr("unusual")));
+  EXPECT_THAT(predict("--audit").text, Not(HasSubstr("unusual")));
+  EXPECT_FALSE(result().group("elrom/audit").has_attribute("unusual"));
 }
 
 }  // namespace

@@ -270,5 +270,41 @@ TEST(Conserve, PacksNoDenserThanTheFieldMay) {
   EXPECT_LE(*std::max_element(values.begin(), values.begin() + 8), 0.55F);
 }
 
+Audit with_ratios(double solids, double gas) {
+  Audit one;
+  one.solids_kg = 1000 * solids;
+  one.inventory_kg = 1000;
+  one.gas_balance = gas;
+  return one;
+}
+
+// 0.98, 1.00, 1.02 by hand: mean 1, variance 2/3 of 0.02 squared.
+TEST(UsualAudit, IsMeanAndScatterOfTheCasesOwn) {
+  const std::vector cases{with_ratios(0.98, 0.9), with_ratios(1, 0.9), with_ratios(1.02, 0.9)};
+
+  const auto usual = usual_figures(cases);
+
+  ASSERT_EQ(usual.size(), 2U);
+  EXPECT_EQ(usual[0].name, "solids over inventory");
+  EXPECT_NEAR(usual[0].mean, 1, 1e-12);
+  EXPECT_NEAR(usual[0].deviation, 0.02 * std::sqrt(2.0 / 3), 1e-12);
+  EXPECT_EQ(usual[0].n_cases, 3U);
+  EXPECT_TRUE(usual_figures(std::span(cases).first(2)).empty());
+}
+
+TEST(UsualAudit, BeyondThreeDeviationsIsUnusual) {
+  const std::vector<UsualFigure> usual{{"solids over inventory", 1, 0.02, 64}};
+
+  EXPECT_TRUE(unusual_figures(with_ratios(1.059, 5), usual).empty());
+  EXPECT_TRUE(unusual_figures(with_ratios(0.941, 5), usual).empty());
+  EXPECT_EQ(unusual_figures(with_ratios(1.061, 5), usual),
+            std::vector<std::string>{"solids over inventory is 1.06: 1.00 +- 0.02 in 64 training cases"});
+  EXPECT_EQ(unusual_figures(with_ratios(0.939, 5), usual).size(), 1U);
+}
+
+TEST(UsualAudit, WithoutTrainingCasesNothingIsUnusual) {
+  EXPECT_TRUE(unusual_figures(with_ratios(7, 7), {}).empty());
+}
+
 }  // namespace
 }  // namespace elrom::model

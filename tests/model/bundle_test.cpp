@@ -73,6 +73,22 @@ TEST(Bundle, CarriesTheFurnaceOfItsCases) {
   EXPECT_ERROR(InputError, "model.elrom:furnace:1", BundleReader(folder / "model.elrom").furnace());
 }
 
+TEST(Bundle, CarriesWhatIsUsualOfItsCasesAudits) {
+  const TemporaryFolder folder;
+  auto written = sample_bundle();
+  written.write(folder / "none.elrom");
+  written.info.usual_audit = {{"solids over inventory", 0.99, 0.02, 64}};
+  written.write(folder / "model.elrom");
+
+  EXPECT_TRUE(BundleReader(folder / "none.elrom").info().usual_audit.empty());
+  const auto usual = BundleReader(folder / "model.elrom").info().usual_audit;
+  ASSERT_EQ(usual.size(), 1U);
+  EXPECT_EQ(usual[0].name, "solids over inventory");
+  EXPECT_EQ(usual[0].mean, 0.99);
+  EXPECT_EQ(usual[0].deviation, 0.02);
+  EXPECT_EQ(usual[0].n_cases, 64U);
+}
+
 TEST(Bundle, ModelsPredictTheSameBitsAfterwards) {
   const TemporaryFolder folder;
   const auto written = sample_bundle();

@@ -78,6 +78,14 @@ TEST(OperatingLine, AFewPerCentOfFurtherCasesLieBeyondTheLimit) {
   EXPECT_LT(beyond, 80);
 }
 
+TEST(OperatingLine, FewCasesNeedWiderLimits) {
+  EXPECT_DOUBLE_EQ(growth_for_few(20), 2);
+  EXPECT_DOUBLE_EQ(growth_for_few(200), 1.01);
+  const OperatingLine few(plant(20, 8)), many(plant(200, 8));
+  EXPECT_NEAR(few.far_limit() / few.limit(), 3.2, 1e-12);
+  EXPECT_NEAR(many.far_limit() / many.limit(), 1.616, 1e-12);
+}
+
 TEST(OperatingLine, ALearnedCaseIsJudgedByTheOthersAlone) {
   auto inputs = plant(40, 5);
   const double usual = OperatingLine(inputs).left_out(7)[4].value;

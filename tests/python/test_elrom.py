@@ -121,6 +121,9 @@ def test_the_guard_judges(predictor, case):
     assert inside.nearest[0].distance <= inside.nearest[1].distance
     outside = predictor.assess(case.values * 10)
     assert outside.verdict == "outside" and outside.out_of_range
+    moved = case.values.copy()
+    moved[0] *= 10
+    assert inside.unusual == [] and "is usual with these other inputs" in predictor.assess(moved).unusual[0]
     with pytest.raises(elrom.ValidityError, match="outside the trained range"):
         predictor.predict(case.values * 10, strict=True)
 

@@ -272,9 +272,13 @@ struct Study::Impl {
             .settings_digest = settings_digest(name)};
   }
 
-  [[nodiscard]] Lineage lineage() const {
-    Lineage lineage{
-        .case_digests = {}, .settings = settings_text(settings), .date = settings.date, .parent = {}};
+  Lineage lineage() {
+    if (!usual_audit) usual_audit = usual_audit_of(store, rows.building);
+    Lineage lineage{.case_digests = {},
+                    .settings = settings_text(settings),
+                    .date = settings.date,
+                    .parent = {},
+                    .usual_audit = *usual_audit};
     for (const auto row : rows.building) lineage.case_digests.push_back(store.digest({&row, 1}));
     return lineage;
   }
@@ -336,6 +340,7 @@ struct Study::Impl {
   HeldOut rows;
   Promotion promotion;
   std::optional<EarlierModel> earlier;  // retraining only
+  std::optional<std::vector<model::UsualFigure>> usual_audit;  // of the building cases, when first asked for
   field::CaseSet cases, plain_cases;
   std::vector<field::FieldInfo> fields;
   io::StageCache cache;

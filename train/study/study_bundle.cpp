@@ -1,5 +1,6 @@
 #include "study_bundle.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/error.hpp"
@@ -27,6 +28,31 @@ bool holds_content(const std::filesystem::path& path, const std::string& content
   }
 }
 
+std::vector<model::UsualFigure> usual_audit_of(const field::SnapshotStore& store,
+                                               std::span<const std::size_t> rows) {
+  if (!store.furnace() || store.mesh().volume.empty()) return {};
+  const auto settings = model::audit_settings(store.furnace());
+  std::vector<field::FieldInfo> fields;
+  for (const auto& info : store.fields())
+    if (std::ranges::find(model::audited_fields, info.name) != model::audited_fields.end())
+      fields.push_back(info);
+  std::vector<model::Audit> audits;
+  for (const auto row : rows) {
+    std::vector<float> values;
+    for (const auto& info : fields) {
+      const auto cells = store.read(info.name, {&row, 1});
+      values.insert(values.end(), cells.data(), cells.data() + cells.size());
+    }
+    audits.push_back(model::audit({.mesh = store.mesh(),
+                                   .schema = store.schema(),
+                                   .inputs = store.cases()[row].inputs.values,
+                                   .fields = fields,
+                                   .values = values},
+                                  settings));
+  }
+  return model::usual_figures(audits);
+}
+
 void write_study_bundle(const std::filesystem::path& path, const StudyBundle& study, const Lineage& lineage,
                         const FieldStages& stages) {
   const auto content = content_of(study, stages);
@@ -38,6 +64,7 @@ void write_study_bundle(const std::filesystem::path& path, const StudyBundle& st
   bundle.info.cases = study.cases.names;
   bundle.info.case_digests = lineage.case_digests;
   bundle.info.settings = lineage.settings;
+  bundle.info.usual_audit = lineage.usual_audit;
   bundle.info.provenance = {{"program", program_version()},
                             {"store", study.store_digest},
                             {"settings", study.settings_digest},

@@ -4,7 +4,9 @@
 #include <optional>
 
 #include "elrom/field/furnace.hpp"
+#include "elrom/field/snapshot_store.hpp"
 #include "elrom/methods/method.hpp"
+#include "elrom/model/audit.hpp"
 #include "field_stage.hpp"
 
 namespace elrom::study {
@@ -22,6 +24,7 @@ struct Lineage {
   std::vector<std::string> case_digests;
   std::string settings;      ///< TOML
   std::string date, parent;  ///< empty: not told, none
+  std::vector<model::UsualFigure> usual_audit;
 };
 
 using FieldStages = std::map<std::string, FieldStage>;
@@ -32,6 +35,10 @@ using FieldStages = std::map<std::string, FieldStage>;
 
 /// Whether there is a whole bundle of this content.
 [[nodiscard]] bool holds_content(const std::filesystem::path& path, const std::string& content);
+
+/// Of the audits of these cases; nothing where nobody described the furnace. Reads their fields.
+[[nodiscard]] std::vector<model::UsualFigure> usual_audit_of(const field::SnapshotStore& store,
+                                                             std::span<const std::size_t> rows);
 
 /// Leaves a bundle alone that already holds exactly this.
 void write_study_bundle(const std::filesystem::path& path, const StudyBundle& bundle, const Lineage& lineage,

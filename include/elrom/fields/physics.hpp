@@ -36,7 +36,8 @@ class Physics {
 
  private:
   bool audit_, conserve_;
-  model::AuditSettings settings_;  ///< of the bundle's furnace
+  model::AuditSettings settings_;          ///< of the bundle's furnace
+  std::vector<model::UsualFigure> usual_;  //!< empty: the bundle does not say
   field::Mesh mesh_;
   field::InputSchema schema_;
   std::vector<field::FieldInfo> fields_;  //!< chosen, in the bundle's order

@@ -15,6 +15,7 @@
 #include "elrom/field/furnace.hpp"
 #include "elrom/field/mesh.hpp"
 #include "elrom/field/planes.hpp"
+#include "elrom/model/audit.hpp"
 #include "elrom/model/field_model.hpp"
 #include "elrom/model/guard.hpp"
 #include "elrom/model/uncertainty.hpp"
@@ -34,7 +35,8 @@ struct BundleInfo {
   std::map<std::string, std::string> provenance;
   /// Of the study, as TOML; what says how and where it runs is at its default. Empty: before 1.2
   std::string settings;
-  std::string accuracy_json = "{}";  ///< cross-validated errors by field, kept for display
+  std::vector<UsualFigure> usual_audit;  ///< of the training cases' audits; empty: not known, before 1.3
+  std::string accuracy_json = "{}";      ///< cross-validated errors by field, kept for display
 };
 
 /// A bundle under construction, or read whole.

@@ -118,11 +118,12 @@ class Neighbour:
 @dataclass(frozen=True)
 class Assessment:
     """The validity guard's judgement. `verdict`: inside, edge or outside of what was trained; `reason`: one sentence;
-    `p_value`: share of training cases at least as far from the others; `nearest`: three training cases."""
+    `unusual`: inputs that the others make unusual, the most unusual first; `p_value`: share of training cases at least as far from the others; `nearest`: three training cases."""
 
     verdict: str
     reason: str
     out_of_range: List[str]
+    unusual: List[str]
     distance: float
     p_value: float
     nearest: List[Neighbour]
