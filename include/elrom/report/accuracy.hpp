@@ -2,10 +2,10 @@
 // Accuracy of a study on the cases it never saw, beside every peer on the same cases.
 //
 // Held-out cases whose names begin with `rep` are repeated runs of the same boundary conditions: they give
-// the noise of the truth and are not scored by themselves. Where every scored case has repeated runs, methods are
-// also scored against the mean of all its runs, the noise left in that mean taken off (see AveragedTruth);
-// that is then the headline's measure. Statistics of the training set are those of all cases that are
-// not held out.
+// the noise of the truth and are not scored by themselves. Where every scored case has some, methods are also
+// scored against the mean of all its runs, the noise left in that mean taken off
+// (FieldAccuracy::averaged_nrmse); that is then the headline's measure. Statistics of the training set are
+// those of all cases that are not held out.
 //
 // Thread rule: evaluate() uses the threads it is given; the results are plain values.
 
@@ -59,10 +59,9 @@ struct MethodField {
   std::string kind;        ///< what answers for the field: "kernel", "pod_gp", "networks" ...
   std::string detail;      ///< members and weights of a blend: "kernel 0.62, pod_gp 0.38"
   ErrorSums pooled;
-  std::vector<ErrorSums> cases;  //!< (n_cases)
-  std::vector<ErrorSums>
-      averaged;  //!< against averaged truths, noise included, (n_cases); empty: there are none
-  std::vector<WorstPlace> worst;  //!< (n_cases)
+  std::vector<ErrorSums> cases;     //!< (n_cases)
+  std::vector<ErrorSums> averaged;  //!< against averaged truths, noise included, (n_cases); empty: none
+  std::vector<WorstPlace> worst;    //!< (n_cases)
 };
 
 /// One band of a networks model.
@@ -99,9 +98,9 @@ struct FieldAccuracy {
   //! Of the best fit with r modes of the training cases, (n_modes + 1)
   std::vector<double> compression_nrmse;
   std::vector<std::vector<double>> coverage;  //!< measured share, (levels, n_cases); empty: no promise made
-  /// Against averaged truths with their noise taken off: r = (error - noise) / (departure - noise), its root with
-  /// the sign of r. Negative where the estimate of the noise exceeds the error: never taken for 0, so that means
-  /// stay without bias. NaN without averaged truths. @param cases to score together; may come more than once
+  /// Against averaged truths with their noise taken off: r = (error - noise) / (departure - noise), its root
+  /// with the sign of r. Negative where the estimate of the noise exceeds the error: taken for 0, it would
+  /// promise a perfect model. NaN without averaged truths. @param cases to score together, also repeatedly
   [[nodiscard]] double averaged_nrmse(std::size_t method, std::span<const std::size_t> cases) const;
   [[nodiscard]] double noise_energy() const;  ///< of all scored cases together; 0 when not known
   [[nodiscard]] double nrmse(std::size_t method) const;
