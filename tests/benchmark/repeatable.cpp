@@ -1,5 +1,5 @@
-// bench-repeatable: does the last bit of the data move the result? The whole of `elrom-train run` on the cases
-// as they are and on copies whose values and boundary conditions differ by up to a part in ten million, as
+// bench-repeatable: does the last bit of the data move the result? All of `elrom-train run` on the cases as
+// they are and on copies whose values and boundary conditions differ by up to a part in ten million, as
 // another compiler, processor or BLAS would round them. The error on the held-out loads should differ by no
 // more than 0.5 % in any field. What each field's answer is made of stands beside it: where that changes from
 // copy to copy, a choice sits on an edge.

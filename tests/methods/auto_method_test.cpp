@@ -72,7 +72,7 @@ TEST(BlendWeights, AreTheBestOfAllSetsOfMembers) {
 }
 
 TEST(Auto, GoesTowardsABlendAsFarAsItGains) {
-  // Equal and independent errors: the blend gains 1 - 1 / sqrt(2). Asked for three times that, it has a third.
+  // Equal, independent errors: the blend gains 1 - 1 / sqrt(2). Asked for three times that, it has a third.
   Contest contest;
   const Fake one("one", noise(contest.data, "a", 0.1)), two("two", noise(contest.data, "b", 0.1));
   const double gain = 1 - std::sqrt(0.5);

@@ -87,6 +87,39 @@ TEST_F(Accuracy, NoiseIsThatOfTheRepeatedRuns) {
   EXPECT_NEAR(report_->fields[0].budget.nrmse_squared(), std::pow(report_->fields[0].nrmse(0), 2), 1e-12);
 }
 
+TEST(AccuracyOfAverages, FollowFromTheRunsByHand) {
+  const SmallStudy study(folder("averages"), {.n_held_out = 1});  // the one load that has repeated runs
+  // rep2 came into the store after the training: the study's split does not know it.
+  auto split = study::read_split(study.folder() / "split.json");
+  std::erase(split.held_out, "rep2");
+  study::write_split(study.folder() / "split.json", split);
+
+  const auto report = evaluate({.study = study.folder()}, silent_log());
+
+  EXPECT_THAT(report.runs, ::testing::ElementsAre(3U));
+  const auto store = field::SnapshotStore::open(study.folder() / "snapshots.h5");
+  const std::array rows{store.find("load_*").front(), store.find("rep1").front(), store.find("rep2").front()};
+  const MatrixD runs = store.read("pressure", rows).cast<double>(),
+                training = store.read("pressure", store.find("train_*")).cast<double>();
+  const Eigen::RowVectorXd truth = runs.colwise().mean(), mean = training.colwise().mean();
+  const double noise = (runs.rowwise() - truth).squaredNorm() / 2 / 3;
+  const model::Predictor predictor(study.folder() / "model.elrom", {.fields = {"pressure"}});
+  model::Predictor::Scratch scratch;
+  Eigen::RowVectorXf values(truth.size());
+  const auto inputs = store.inputs(std::array{rows[0]});
+  predictor.predict({inputs.data(), 2}, {values.data(), predictor.size()}, {}, scratch);
+  const double error = (values.cast<double>() - truth).squaredNorm() - noise,
+               departure = (mean - truth).squaredNorm() - noise;
+  const double expected = std::copysign(std::sqrt(std::abs(error) / departure), error);
+  EXPECT_NEAR(report.fields[1].averaged_nrmse(0, std::array{std::size_t{0}}), expected, 1e-6);
+  EXPECT_FALSE(report.averaged_error(0).interval) << "of one case";
+}
+
+TEST_F(Accuracy, WithoutRepeatsOfEveryCaseThereAreNoAverages) {
+  EXPECT_FALSE(report_->has_averaged_truth());
+  EXPECT_TRUE(report_->fields[0].averaged_noise.empty());
+}
+
 TEST_F(Accuracy, CoverageIsMeasuredAtEveryPromisedLevel) {
   ASSERT_EQ(report_->fields[0].coverage.size(), coverage_levels.size());
   const double narrow = report_->mean_coverage(0), wide = report_->mean_coverage(2);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "elrom/math/statistics.hpp"
 #include "elrom/report/accuracy.hpp"
 #include "elrom/report/page.hpp"
 #include "report/small_study.hpp"
@@ -96,6 +97,46 @@ TEST(Headline, TooFewCasesForAnIntervalIsSaid) {
 
   EXPECT_FALSE(report.gain().interval);
   EXPECT_THAT(headline(report), HasSubstr("too few cases for an interval"));
+}
+
+/// Errors and departures hold `noise` beside what is left: r^2 for each method, 1 for the departure.
+void average_truths(AccuracyReport& report, double noise, const std::vector<double>& nrmse) {
+  report.runs.assign(report.cases.size(), 4);
+  for (auto& field : report.fields) {
+    field.averaged_noise.assign(report.cases.size(), noise);
+    for (std::size_t m = 0; m < nrmse.size(); ++m)
+      field.methods[m].averaged.assign(
+          report.cases.size(), {.n = 10, .error = nrmse[m] * nrmse[m] + noise, .departure = 1 + noise});
+  }
+}
+
+TEST(Headline, AveragedTruthsAreTheMeasureWhereEveryCaseHasThem) {
+  auto report = two_fields();
+  EXPECT_THAT(headline(report), Not(HasSubstr("averaged")));
+  EXPECT_TRUE(std::isnan(report.averaged_error(0).value));
+  average_truths(report, 0.2, {0.3, 0.4, 0.6});
+
+  EXPECT_NEAR(report.averaged_error(0).value, 0.3, 1e-12);
+  EXPECT_NEAR(report.averaged_gain().value, 0.5, 1e-12);
+  EXPECT_THAT(
+      headline(report),
+      ::testing::StartsWith("Truths averaged over 4 runs each, the noise left in them taken off: mean "
+                            "NRMSE 0.300 (90 % interval 0.300 to 0.300), 50.0 % (90 % interval 50.0 to "
+                            "50.0 %) below the best single peer, linear (0.600). Against single runs: "));
+  EXPECT_THAT(terminal_table(report, false), HasSubstr("mean, averaged truths"));
+  const auto root = nlohmann::json::parse(to_json(report));
+  EXPECT_NEAR(root["averaged_truth"]["methods"][0]["mean_nrmse"].get<double>(), 0.3, 1e-12);
+  EXPECT_EQ(root["averaged_truth"]["best_single_peer"], "linear");
+  EXPECT_NEAR(root["fields"][0]["methods"][2]["nrmse_averaged_truth"].get<double>(), 0.6, 1e-12);
+}
+
+TEST(Headline, AnErrorBelowTheNoiseOfAveragedTruthsIsNegativeNotZero) {
+  auto report = two_fields();
+  average_truths(report, 0.2, {0.3, 0.4, 0.6});
+  for (auto& sums : report.fields[0].methods[0].averaged) sums.error = 0.2 - 0.04;
+
+  EXPECT_NEAR(report.fields[0].averaged_nrmse(0, math::all_rows(6)), -0.2, 1e-12);
+  EXPECT_NEAR(report.averaged_error(0).value, (0.3 - 0.2) / 2, 1e-12);
 }
 
 TEST(Headline, NothingIsClaimedOfErrorsBelowTheNoise) {

@@ -8,6 +8,7 @@
 
 #include "elrom/base/text.hpp"
 #include "elrom/io/file_kind.hpp"
+#include "elrom/math/statistics.hpp"
 #include "elrom/report/accuracy.hpp"
 
 namespace elrom::report {
@@ -39,6 +40,7 @@ Json method_on_field(const AccuracyReport& report, const FieldAccuracy& field, s
   node.update(scores(method.pooled));
   node["nrmse_without_noise"] = number(field.nrmse_without_noise(m));
   node["below_noise"] = field.below_noise(m);
+  node["nrmse_averaged_truth"] = number(field.averaged_nrmse(m, math::all_rows(report.cases.size())));
   for (std::size_t i = 0; i < report.cases.size(); ++i) {
     Json of_case{{"case", report.cases[i].name}};
     of_case.update(scores(method.cases[i]));
@@ -115,6 +117,25 @@ Json case_node(const ScoredCase& scored) {
   return node;
 }
 
+/// null: some held-out case has no repeated run
+Json averaged_node(const AccuracyReport& report) {
+  if (!report.has_averaged_truth()) return {};
+  Json node{{"runs", report.runs}};
+  for (std::size_t m = 0; m < report.methods.size(); ++m) {
+    const auto error = report.averaged_error(m);
+    node["methods"].push_back({{"method", report.methods[m].file.name},
+                               {"mean_nrmse", number(error.value)},
+                               {"interval", interval_node(error.interval)}});
+  }
+  if (const auto best = report.best_averaged_peer()) {
+    const auto gain = report.averaged_gain();
+    node["best_single_peer"] = report.methods[*best].file.name;
+    node["gain_over_best_single_peer"] = number(gain.value);
+    node["gain_interval"] = interval_node(gain.interval);
+  }
+  return node;
+}
+
 Json method_node(const AccuracyReport& report, std::size_t m) {
   const auto& method = report.methods[m];
   return {{"method", method.file.name},
@@ -158,6 +179,7 @@ std::string to_json(const AccuracyReport& report) {
                {"gain_interval", interval_node(gain.interval)},
                {"gain_interval_level", gain_level},
                {"gain_without_noise", number(report.gain_without_noise())},
+               {"averaged_truth", averaged_node(report)},
                {"fields_at_or_below_every_simple_peer", report.fields_won()},
                {"fields_at_or_below_every_method", report.fields_won_against_all()},
                {"fields_below_noise", report.fields_below_noise()},

@@ -121,6 +121,12 @@ std::string field_note(const AccuracyReport& report, const FieldAccuracy& field)
   return note;
 }
 
+std::vector<double> averaged_errors(const AccuracyReport& report) {
+  std::vector<double> errors;
+  for (std::size_t m = 0; m < report.methods.size(); ++m) errors.push_back(report.averaged_error(m).value);
+  return errors;
+}
+
 // What the noise of the truth leaves to say; nothing is claimed of an error that lies below it.
 std::string noise_line(const AccuracyReport& report) {
   double floor = 0;
@@ -129,6 +135,7 @@ std::string noise_line(const AccuracyReport& report) {
   auto text = fmt::format(
       "  The truth's own noise (repeated runs) is {} of it, about the least that any model can reach",
       score_text(floor));
+  if (report.has_averaged_truth()) return text + ".\n";
   if (const double gain = report.gain_without_noise(); std::isfinite(gain))
     text += fmt::format("; with it taken off, ELROM is {} {} the best peer", percent_text(std::abs(gain)),
                         gain >= 0 ? "below" : "above");
@@ -162,7 +169,10 @@ std::string terminal_table(const AccuracyReport& report, bool colour) {
     clean.push_back(method.mean_nrmse_without_noise);
   }
   text += row("mean", means, width, ink, report.best_peer() ? gain_text(report.gain()) : "");
-  if (const auto n = report.fields_above_noise(); n == report.fields.size())
+  if (report.has_averaged_truth())
+    text +=
+        row("mean, averaged truths", averaged_errors(report), width, ink, gain_text(report.averaged_gain()));
+  else if (const auto n = report.fields_above_noise(); n == report.fields.size())
     text += row("mean, noise taken off", clean, width, ink);
   else if (n > 0)
     text += row(fmt::format("{} of {}, noise taken off", n, report.fields.size()), clean, width, ink,

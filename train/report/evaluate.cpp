@@ -35,8 +35,20 @@ std::vector<std::size_t> rows_of(const field::SnapshotStore& store, const std::v
   return rows;
 }
 
+// The study's held-out cases, and repeated runs that came into the store since it was trained.
+std::vector<std::size_t> judged_rows(const field::SnapshotStore& store, const StudyFiles& study) {
+  auto rows = rows_of(store, study.held_out);
+  for (std::size_t row = 0; row < store.n_cases() && store.furnace(); ++row) {
+    const auto& name = store.cases()[row].inputs.name;
+    if (store.furnace()->is_repeat(name) && std::ranges::find(study.building, name) == study.building.end() &&
+        std::ranges::find(rows, row) == rows.end())
+      rows.push_back(row);
+  }
+  return rows;
+}
+
 HeldOutCases hold_out_cases(const field::SnapshotStore& store, const StudyFiles& study) {
-  const auto judged = study::judged_cases(store, rows_of(store, study.held_out));
+  const auto judged = study::judged_cases(store, judged_rows(store, study));
   HeldOutCases cases{.building = {}, .scored = judged.scored, .repeats = judged.repeats, .inputs = {}};
   if (cases.scored.empty())
     throw UsageError({.what = "no held-out case to score",
@@ -193,6 +205,8 @@ AccuracyReport evaluate_bundles(StudyFiles study, const EvaluateOptions& options
   report.n_columns = store.mesh().n_columns;
   for (const auto& set : cases.repeats)
     for (const std::size_t row : set) report.repeats.push_back(store.cases()[row].inputs.name);
+  for (std::size_t i = 0; i < cases.scored.size() && cases.all_repeated(); ++i)
+    report.runs.push_back(cases.runs_of(i).size());
   const auto& bundles = report.study.bundles;
   for (const auto& bundle : bundles)
     report.methods.push_back(summarise(bundle, store, cases, options.n_threads));

@@ -26,20 +26,16 @@ double pooled_nrmse(const MethodField& method, std::span<const std::size_t> case
 }
 
 double mean_nrmse(std::span<const FieldAccuracy> fields, std::size_t method,
-                  std::span<const std::size_t> cases) {
+                  std::span<const std::size_t> cases, Truth truth) {
   double sum = 0;
-  for (const auto& field : fields) sum += pooled_nrmse(field.methods[method], cases);
+  for (const auto& field : fields)
+    sum += truth == Truth::averaged ? field.averaged_nrmse(method, cases)
+                                    : pooled_nrmse(field.methods[method], cases);
   return sum / static_cast<double>(fields.size());
 }
 
 bool all_have(std::span<const FieldAccuracy> fields, std::size_t method) {
   return std::ranges::all_of(fields, [&](const FieldAccuracy& f) { return f.methods[method].available; });
-}
-
-double mean_of_pooled(std::span<const FieldAccuracy> fields, std::size_t method) {
-  double sum = 0;
-  for (const auto& field : fields) sum += field.nrmse(method);
-  return sum / static_cast<double>(fields.size());
 }
 
 }  // namespace
@@ -49,15 +45,49 @@ Gain::Verdict Gain::verdict() const {
   return interval->low > 0 ? Verdict::better : Verdict::worse;
 }
 
-Gain relative_gain(std::span<const FieldAccuracy> fields, std::size_t method, std::size_t other) {
+Gain relative_gain(std::span<const FieldAccuracy> fields, std::size_t method, std::size_t other,
+                   Truth truth) {
   if (fields.empty() || !all_have(fields, method) || !all_have(fields, other)) return {undefined, {}};
-  const auto draw = [&](std::span<const std::size_t> cases) {
-    return 1 - mean_nrmse(fields, method, cases) / mean_nrmse(fields, other, cases);
+  const auto of_cases = [&](std::span<const std::size_t> cases) {
+    return 1 - mean_nrmse(fields, method, cases, truth) / mean_nrmse(fields, other, cases, truth);
   };
-  Gain gain{1 - mean_of_pooled(fields, method) / mean_of_pooled(fields, other), {}};
-  gain.interval =
-      math::bootstrap_interval(fields.front().methods[method].cases.size(), draw, {.level = gain_level});
-  return gain;
+  const auto all = math::all_rows(fields.front().methods[method].cases.size());
+  return {of_cases(all), math::bootstrap_interval(all.size(), of_cases, {.level = gain_level})};
+}
+
+double FieldAccuracy::averaged_nrmse(std::size_t method, std::span<const std::size_t> cases) const {
+  if (averaged_noise.empty() || !methods[method].available) return undefined;
+  double error = 0, departure = 0;
+  for (const auto i : cases) {
+    error += methods[method].averaged[i].error - averaged_noise[i];
+    departure += methods[method].averaged[i].departure - averaged_noise[i];
+  }
+  return departure > 0 ? std::copysign(std::sqrt(std::abs(error) / departure), error) : undefined;
+}
+
+MeanError AccuracyReport::averaged_error(std::size_t method) const {
+  if (!has_averaged_truth() || fields.empty()) return {undefined, {}};
+  const auto of_cases = [&](std::span<const std::size_t> drawn) {
+    return mean_nrmse(fields, method, drawn, Truth::averaged);
+  };
+  return {of_cases(math::all_rows(cases.size())),
+          math::bootstrap_interval(cases.size(), of_cases, {.level = gain_level})};
+}
+
+std::optional<std::size_t> AccuracyReport::best_averaged_peer() const {
+  std::optional<std::size_t> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto all = math::all_rows(cases.size());
+  for (std::size_t m = 1; m < methods.size() && has_averaged_truth(); ++m) {
+    const double error = methods[m].file.is_peer ? mean_nrmse(fields, m, all, Truth::averaged) : undefined;
+    if (error < least) best = m, least = error;
+  }
+  return best;
+}
+
+Gain AccuracyReport::averaged_gain() const {
+  const auto best = best_averaged_peer();
+  return best ? relative_gain(fields, 0, *best, Truth::averaged) : Gain{undefined, {}};
 }
 
 std::string in_words(const Gain& gain) {

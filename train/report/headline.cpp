@@ -76,10 +76,37 @@ std::string leaks(const AccuracyReport& report) {
   return text;
 }
 
+// "each the mean of 5 runs"
+std::string runs_text(const std::vector<std::size_t>& runs) {
+  const auto [least, most] = std::ranges::minmax(runs);
+  return least == most ? fmt::format("{} runs", least) : fmt::format("{} to {} runs", least, most);
+}
+
+std::string interval_text(const std::optional<math::LikelyRange>& interval) {
+  if (!interval) return "too few cases for an interval";
+  return fmt::format("{:.0f} % interval {:.3f} to {:.3f}", 100 * gain_level, interval->low, interval->high);
+}
+
+// Errors against the mean of several runs: what single runs hide in their own noise.
+std::string averaged_headline(const AccuracyReport& report) {
+  const auto own = report.averaged_error(0);
+  auto text =
+      fmt::format("Truths averaged over {} each, the noise left in them taken off: mean NRMSE {} ({})",
+                  runs_text(report.runs), score_text(own.value), interval_text(own.interval));
+  if (const auto best = report.best_averaged_peer()) {
+    const auto gain = report.averaged_gain();
+    text += fmt::format(", {} {} the best single peer, {} ({})", in_words(gain),
+                        gain.value >= 0 ? "below" : "above", method_label(report.methods[*best].file.name),
+                        score_text(report.averaged_error(*best).value));
+  }
+  return text + ". Against single runs: ";
+}
+
 }  // namespace
 
 std::string headline(const AccuracyReport& report) {
-  auto text =
+  auto text = report.has_averaged_truth() ? averaged_headline(report) : std::string();
+  text +=
       fmt::format("{} held-out {}: mean NRMSE {} over {} {}", report.cases.size(),
                   report.words.case_word(report.cases.size()), score_text(report.methods.front().mean_nrmse),
                   report.fields.size(), report.fields.size() == 1 ? "field" : "fields");

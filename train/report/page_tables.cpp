@@ -195,7 +195,12 @@ std::string key_figures(const AccuracyReport& report) {
                   fmt::format("{} of {}", report.fields_won_against_all(), report.fields.size()),
                   fmt::format("against simple peers alone: {}", report.fields_won()));
   }
-  if (std::isfinite(report.gain_without_noise()))
+  if (report.has_averaged_truth())
+    tiles +=
+        tile("Gain, averaged truths", percent_text(report.averaged_gain().value),
+             fmt::format("{}mean NRMSE {} against runs averaged, their noise taken off",
+                         interval_note(report.averaged_gain()), score_text(report.averaged_error(0).value)));
+  else if (std::isfinite(report.gain_without_noise()))
     tiles += tile("Gain, noise taken off", percent_text(report.gain_without_noise()),
                   fmt::format("mean NRMSE {}", score_text(own.mean_nrmse_without_noise)));
   if (const auto below = report.fields_below_noise(); below > 0)

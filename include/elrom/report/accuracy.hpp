@@ -2,8 +2,10 @@
 // Accuracy of a study on the cases it never saw, beside every peer on the same cases.
 //
 // Held-out cases whose names begin with `rep` are repeated runs of the same boundary conditions: they give
-// the noise of the truth and are not scored. Statistics of the training set are those of all cases that are
-// not held out.
+// the noise of the truth and are not scored by themselves. Where every scored case has some, methods are also
+// scored against the mean of all its runs, the noise left in that mean taken off
+// (FieldAccuracy::averaged_nrmse); that is then the headline's measure. Statistics of the training set are
+// those of all cases that are not held out.
 //
 // Thread rule: evaluate() uses the threads it is given; the results are plain values.
 
@@ -57,8 +59,9 @@ struct MethodField {
   std::string kind;        ///< what answers for the field: "kernel", "pod_gp", "networks" ...
   std::string detail;      ///< members and weights of a blend: "kernel 0.62, pod_gp 0.38"
   ErrorSums pooled;
-  std::vector<ErrorSums> cases;   //!< (n_cases)
-  std::vector<WorstPlace> worst;  //!< (n_cases)
+  std::vector<ErrorSums> cases;     //!< (n_cases)
+  std::vector<ErrorSums> averaged;  //!< against averaged truths, noise included, (n_cases); empty: none
+  std::vector<WorstPlace> worst;    //!< (n_cases)
 };
 
 /// One band of a networks model.
@@ -88,10 +91,17 @@ struct FieldAccuracy {
   std::vector<double> noise;  ///< energy of the truth's noise in each scored case; empty: not known
   /// Its square root over the departure of the scored cases: the noise floor
   std::optional<double> noise_nrmse;
+  /// Energy of the noise that is left in the mean of each case's n runs: that of one run, estimated from the
+  /// same runs without bias, over n, (n_cases); empty: some case has no repeated run
+  std::vector<double> averaged_noise;
   ErrorBudget budget;  ///< of the study's model
   //! Of the best fit with r modes of the training cases, (n_modes + 1)
   std::vector<double> compression_nrmse;
   std::vector<std::vector<double>> coverage;  //!< measured share, (levels, n_cases); empty: no promise made
+  /// Against averaged truths with their noise taken off: r = (error - noise) / (departure - noise), its root
+  /// with the sign of r. Negative where the estimate of the noise exceeds the error: taken for 0, it would
+  /// promise a perfect model. NaN without averaged truths. @param cases to score together, also repeatedly
+  [[nodiscard]] double averaged_nrmse(std::size_t method, std::span<const std::size_t> cases) const;
   [[nodiscard]] double noise_energy() const;  ///< of all scored cases together; 0 when not known
   [[nodiscard]] double nrmse(std::size_t method) const;
   /// With the noise of the truth taken off; NaN without repeated runs, and for an error below the noise.
@@ -111,6 +121,15 @@ struct Gain {
 };
 /// Of all intervals of gains: two-sided, from math::bootstrap_interval with its draws and seed.
 inline constexpr double gain_level = 0.9;
+
+/// A method's mean error over the fields, and how far other cases of the kind would move it.
+struct MeanError {
+  double value = 0;                           ///< NaN: not known
+  std::optional<math::LikelyRange> interval;  ///< at gain_level, over the scored cases; none: too few cases
+};
+
+/// Against what the errors of a comparison are taken.
+enum class Truth { one_run, averaged };
 
 struct MethodSummary {
   BundleFile file;
@@ -134,7 +153,16 @@ struct AccuracyReport {
   std::vector<std::string> repeats;  ///< runs that gave the noise
   field::Words words;                ///< of the store's furnace description
   std::optional<Figures> figures;
+  std::vector<std::size_t>
+      runs;  ///< in each case's averaged truth, (n_cases); empty: some have no repeated run
 
+  /// Every scored case's truth is known as the mean of several runs.
+  [[nodiscard]] bool has_averaged_truth() const { return !runs.empty(); }
+  /// Mean over the fields of FieldAccuracy::averaged_nrmse.
+  [[nodiscard]] MeanError averaged_error(std::size_t method) const;
+  /// The simple peer of the lowest averaged_error(), and the gain over it; none without averaged truths.
+  [[nodiscard]] std::optional<std::size_t> best_averaged_peer() const;
+  [[nodiscard]] Gain averaged_gain() const;
   /// Index of the simple peer with the lowest mean NRMSE; none without peers.
   [[nodiscard]] std::optional<std::size_t> best_peer() const;
   /// Index of the best simple peer in one field.
@@ -166,8 +194,8 @@ struct AccuracyReport {
                                       const std::stop_token& stop = {});
 
 /// Of `fields` (their mean, where there are several) over the scored cases: `method` against `other`.
-[[nodiscard]] Gain relative_gain(std::span<const FieldAccuracy> fields, std::size_t method,
-                                 std::size_t other);
+[[nodiscard]] Gain relative_gain(std::span<const FieldAccuracy> fields, std::size_t method, std::size_t other,
+                                 Truth truth = Truth::one_run);
 /// "9.9 % (90 % interval 4.1 to 14.2 %)" of the size of a gain; says so where no difference is shown.
 [[nodiscard]] std::string in_words(const Gain& gain);
 
