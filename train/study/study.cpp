@@ -185,7 +185,7 @@ struct Study::Impl {
     const auto left_out = left_out_of(name, data);
     const bool networks_out = std::ranges::find(left_out, "networks", &LeftOut::name) != left_out.end();
     if (earlier_rows.size() > 1 && methods.trains_networks(name) && !networks_out) reuse_plan(data);
-    data.cases = methods.is_peer(name) ? &plain_cases : &cases;
+    data.cases = methods.is_peer(name) && name != settings.method ? &plain_cases : &cases;
     const FieldStageRequest request{
         .name = name,
         .candidates = methods.candidates_of(name),
