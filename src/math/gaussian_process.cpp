@@ -90,23 +90,38 @@ double gp_negative_log_likelihood(const MatrixD& inputs, const MatrixXd& targets
 }
 
 GpParameters fit_gp(const MatrixD& inputs, const MatrixXd& targets, const GpFitOptions& options) {
-  const Eigen::Index p = inputs.cols();
-  VectorXd lower(p + 2), upper(p + 2);
-  lower << VectorXd::Constant(p, std::log(options.lowest_length)), -5, std::log(options.lowest_noise);
-  upper << VectorXd::Constant(p, std::log(options.highest_length)), 5, std::log(options.highest_noise);
+  check(!options.start_noises.empty(), "Gaussian process: at least one noise to start from");
+  const Eigen::Index p = inputs.cols(), n_lengths = options.isotropic ? 1 : p;
+  VectorXd lower(n_lengths + 2), upper(n_lengths + 2), start(n_lengths + 2), all(p + 2), slopes;
+  lower << VectorXd::Constant(n_lengths, std::log(options.lowest_length)), -5, std::log(options.lowest_noise);
+  upper << VectorXd::Constant(n_lengths, std::log(options.highest_length)), 5,
+      std::log(options.highest_noise);
+  const auto spread = [&](const VectorXd& theta) -> const VectorXd& {
+    for (Eigen::Index j = 0; j < p; ++j) all[j] = theta[std::min(j, n_lengths - 1)];
+    all.tail(2) = theta.tail(2);
+    return all;
+  };
   const Objective objective = [&](const VectorXd& theta, VectorXd& gradient) {
-    return gp_negative_log_likelihood(inputs, targets, options.covariance, theta, gradient);
+    const double value =
+        gp_negative_log_likelihood(inputs, targets, options.covariance, spread(theta), slopes);
+    gradient.resize(theta.size());
+    if (options.isotropic)
+      gradient[0] = slopes.head(p).sum();
+    else
+      gradient.head(p) = slopes.head(p);
+    gradient.tail(2) = slopes.tail(2);
+    return value;
   };
   Minimum best{{}, std::numeric_limits<double>::infinity(), 0};
-  for (double length : options.start_lengths) {
-    VectorXd start(p + 2);
-    start << VectorXd::Constant(p, std::log(length)), 0, std::log(0.1);
+  for (std::size_t i = 0; i < options.start_lengths.size(); ++i) {
+    const double noise = options.start_noises[i % options.start_noises.size()];
+    start << VectorXd::Constant(n_lengths, std::log(options.start_lengths[i])), 0, std::log(noise);
     const Minimum found =
         minimise(objective, start, lower, upper, {.max_iterations = options.max_iterations});
     if (found.value < best.value) best = found;
   }
-  check(best.x.size() == p + 2, "Gaussian process: at least one start");
-  return parameters_of(best.x, options.covariance);
+  check(best.x.size() == n_lengths + 2, "Gaussian process: at least one start");
+  return parameters_of(spread(best.x), options.covariance);
 }
 
 GaussianProcess::GaussianProcess(const MatrixD& inputs, const MatrixXd& targets, GpParameters parameters)

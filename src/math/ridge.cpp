@@ -28,22 +28,45 @@ MatrixXd loo_residuals(const Decomposition& d, const MatrixXd& y_centred, const 
   return residual.array().colwise() / (1 - leverage.array()).cwiseMax(1e-12);
 }
 
+/// Centred inputs, decomposed, and centred targets.
+struct Problem {
+  Eigen::RowVectorXd x_mean, y_mean;
+  MatrixXd y_centred, uty;
+  Decomposition d;
+
+  Problem(const MatrixD& x, const MatrixXd& y, std::span<const double> penalties)
+      : x_mean(x.colwise().mean()), y_mean(y.colwise().mean()), y_centred(y.rowwise() - y_mean) {
+    check(!penalties.empty() && x.rows() == y.rows() && x.rows() > 0, "ridge: cases, targets and a penalty");
+    const Eigen::JacobiSVD<MatrixXd> svd(MatrixXd(x.rowwise() - x_mean),
+                                         Eigen::ComputeThinU | Eigen::ComputeThinV);
+    d = {svd.matrixU(), svd.matrixV(), svd.singularValues()};
+    uty = d.u.transpose() * y_centred;
+  }
+
+  [[nodiscard]] MatrixXd residuals(double penalty) const { return loo_residuals(d, y_centred, uty, penalty); }
+
+  /// What follows from the penalty of each target and its residuals.
+  void solve(const VectorXd& penalties, Ridge& ridge) const {
+    ridge.loo_variance = ridge.loo_residuals.colwise().squaredNorm().transpose() /
+                         static_cast<double>(ridge.loo_residuals.rows());
+    MatrixXd scaled = uty;
+    for (Eigen::Index k = 0; k < scaled.cols(); ++k)
+      scaled.col(k).array() *= d.s.array() / (d.s.array().square() + penalties[k]);
+    ridge.weights = d.v * scaled;
+    ridge.intercept = (y_mean - x_mean * ridge.weights).transpose();
+  }
+};
+
 }  // namespace
 
 MatrixXd Ridge::predict(const MatrixD& x) const { return (x * weights).rowwise() + intercept.transpose(); }
 
 Ridge fit_ridge(const MatrixD& x, const MatrixXd& y, std::span<const double> penalties) {
-  check(!penalties.empty() && x.rows() == y.rows() && x.rows() > 0, "ridge: cases, targets and a penalty");
-  const Eigen::RowVectorXd x_mean = x.colwise().mean(), y_mean = y.colwise().mean();
-  const MatrixXd x_centred = x.rowwise() - x_mean, y_centred = y.rowwise() - y_mean;
-  const Eigen::JacobiSVD<MatrixXd> svd(x_centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Decomposition d{svd.matrixU(), svd.matrixV(), svd.singularValues()};
-  const MatrixXd uty = d.u.transpose() * y_centred;
-
+  const Problem problem(x, y, penalties);
   Ridge ridge;
   double least = std::numeric_limits<double>::infinity();
   for (double penalty : penalties) {
-    MatrixXd residuals = loo_residuals(d, y_centred, uty, penalty);
+    MatrixXd residuals = problem.residuals(penalty);
     const double squares = residuals.squaredNorm();
     if (squares < least || ridge.penalty == 0) {
       least = squares;
@@ -51,11 +74,24 @@ Ridge fit_ridge(const MatrixD& x, const MatrixXd& y, std::span<const double> pen
       ridge.loo_residuals = std::move(residuals);
     }
   }
-  ridge.loo_variance =
-      ridge.loo_residuals.colwise().squaredNorm().transpose() / static_cast<double>(x.rows());
-  const VectorXd inverse = d.s.array() / (d.s.array().square() + ridge.penalty);
-  ridge.weights = d.v * (inverse.asDiagonal() * uty);
-  ridge.intercept = (y_mean - x_mean * ridge.weights).transpose();
+  problem.solve(VectorXd::Constant(y.cols(), ridge.penalty), ridge);
+  return ridge;
+}
+
+Ridge fit_ridge_each(const MatrixD& x, const MatrixXd& y, std::span<const double> penalties) {
+  const Problem problem(x, y, penalties);
+  Ridge ridge;
+  ridge.loo_residuals = problem.residuals(penalties.front());
+  VectorXd own = VectorXd::Constant(y.cols(), penalties.front());
+  for (double penalty : penalties.subspan(1)) {
+    const MatrixXd residuals = problem.residuals(penalty);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      if (residuals.col(k).squaredNorm() >= ridge.loo_residuals.col(k).squaredNorm()) continue;
+      own[k] = penalty;
+      ridge.loo_residuals.col(k) = residuals.col(k);
+    }
+  }
+  problem.solve(own, ridge);
   return ridge;
 }
 

@@ -164,7 +164,8 @@ class Workbench {
   [[nodiscard]] auto pod(const std::function<void(methods::PodMlpOptions&)>& change = {}) const {
     return [this, change](const std::string&) {
       methods::PodMlpOptions options;
-      if (options_.small) options.budget.max_epochs = 60;
+      for (auto& recipe : options.recipes)
+        if (options_.small) recipe.budget.max_epochs = 60;
       if (change) change(options);
       return methods::make_pod_mlp(trainer_, options);
     };

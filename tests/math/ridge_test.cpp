@@ -73,5 +73,23 @@ TEST(Ridge, EqualInputsShareTheirWeight) {
   EXPECT_NEAR(ridge.weights(1, 0), 1, 1e-6);
 }
 
+TEST(Ridge, APenaltyEachIsThatOfATargetAlone) {
+  base::Random random(base::Seed(7));
+  const MatrixD x = MatrixD::NullaryExpr(20, 3, [&] { return random.normal(); });
+  Eigen::MatrixXd y = Eigen::MatrixXd::NullaryExpr(20, 2, [&] { return random.normal(); });
+  y.col(0) = 3 * x.col(1);  // nothing to smooth, beside pure noise
+  const std::vector<double> penalties{1e-4, 1, 1e4};
+
+  const Ridge both = fit_ridge_each(x, y, penalties);
+
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const Ridge alone = fit_ridge(x, y.col(k), penalties);
+    EXPECT_EQ(alone.penalty, k == 0 ? 1e-4 : 1e4);
+    EXPECT_TRUE(both.weights.col(k).isApprox(alone.weights.col(0), 1e-12));
+    EXPECT_NEAR(both.loo_variance[k], alone.loo_variance[0], 1e-12);
+    EXPECT_NEAR(both.intercept[k], alone.intercept[0], 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace elrom::math

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "elrom/base/error.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
@@ -24,7 +26,7 @@ MatrixF predict_all(const model::FieldModel& model, const field::CaseSet& cases)
 }
 
 class EveryPeer : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Peers, EveryPeer, ::testing::ValuesIn(peer_names()));
+INSTANTIATE_TEST_SUITE_P(Peers, EveryPeer, ::testing::ValuesIn(closed_form_peers()));
 
 TEST_P(EveryPeer, PredictsUnseenCasesBetterThanTheMean) {
   const field::CaseSet cases = test::toy_cases(30);
@@ -72,6 +74,43 @@ TEST_P(EveryPeer, KeepsItsNameInTheBundle) {
 TEST_P(EveryPeer, EveryOptionIsPartOfTheKey) {
   for (const auto& options : test::each_member_changed(PeerOptions{}))
     EXPECT_NE(make_peer(GetParam(), options)->key("pressure"), make_peer(GetParam())->key("pressure"));
+}
+
+/// Cases along one smooth curve through many modes: enough of them and no smoothing, or the field is lost.
+field::FieldData smooth_field(const field::CaseSet& cases) {
+  field::FieldData data = test::toy_field(cases);
+  for (Eigen::Index i = 0; i < data.values.rows(); ++i) {
+    const double at = static_cast<double>(i) / static_cast<double>(data.values.rows());
+    for (Eigen::Index c = 0; c < data.values.cols(); ++c)
+      data.values(i, c) =
+          static_cast<float>(std::exp(-50 * std::pow(at - 0.01 * static_cast<double>(c % 100), 2)));
+  }
+  return data;
+}
+
+field::CaseSet curve(std::size_t n) {
+  field::CaseSet cases = test::toy_cases(n);
+  for (Eigen::Index i = 0; i < cases.inputs.rows(); ++i)
+    cases.inputs.row(i).setConstant(static_cast<double>(i));
+  return cases;
+}
+
+TEST(Peers, OnASmoothFieldWithoutNoiseTheyChooseModesAndHardlyAnySmoothing) {
+  const field::CaseSet cases = curve(40);
+  const field::FieldData data = smooth_field(cases);
+
+  for (const char* name : {"pod_rbf", "pod_gp_per_mode"})
+    EXPECT_LT(test::unseen_error(*make_peer(name), data), 0.15) << name;
+}
+
+TEST(Peers, OnPureNoiseTheyKeepToTheMean) {
+  const field::CaseSet cases = test::toy_cases(24);
+  field::FieldData data = test::toy_field(cases);
+  base::Random random(base::Seed(3));
+  for (float& value : data.values.reshaped()) value = static_cast<float>(random.normal());
+
+  for (const char* name : {"linear", "pod_rbf", "pod_gp", "pod_gp_per_mode"})
+    EXPECT_LT(test::unseen_error(*make_peer(name), data), 1.15) << name;
 }
 
 TEST(Peers, UnknownNameGetsTheNearest) {

@@ -186,7 +186,8 @@ struct NamedFit {
 /// Every method, and every kind of model that is made of others.
 std::vector<NamedFit> all_fits() {
   std::vector<NamedFit> fits;
-  for (const auto& name : methods::peer_names()) fits.push_back({name, fit_by(methods::make_peer(name))});
+  for (const auto& name : methods::closed_form_peers())
+    fits.push_back({name, fit_by(methods::make_peer(name))});
   fits.push_back({"kernel", fit_by(methods::make_kernel_method())});
   fits.push_back({"blend", fit_blend});
   fits.push_back({"mirror", fit_mirror});
@@ -196,9 +197,9 @@ std::vector<NamedFit> all_fits() {
   averaged.networks.average = true;
   averaged.bands.scope = "plane";
   fits.push_back({"networks_averaged", fit_by(networks(averaged))});
-  fits.push_back(
-      {"pod_mlp", fit_by(methods::make_pod_mlp(torch::make_torch_trainer(),
-                                               {.builds = 2, .budget = {20, 10}, .mirrors = true}))});
+  fits.push_back({"pod_mlp", fit_by(methods::make_pod_mlp(
+                                 torch::make_torch_trainer(),
+                                 {.builds = 2, .recipes = {{{}, {20, 10}}}, .mirrors = true}))});
   fits.push_back({"diverging_search", fit_diverging_search});
   fits.push_back({"diverging_fit", fit_diverging});
 #endif

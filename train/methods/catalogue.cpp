@@ -13,9 +13,17 @@ constexpr std::array<MethodInfo, 8> table{{
     {"pod_gp", "POD + GP", true, false, 4},
     {"pod_gp_per_mode", "POD + GP per mode", true, false, 5},
     {"pod_rbf", "POD + RBF", true, false, 3},
-    {"pod_mlp", "POD + MLP", false, true, 7},
+    {"pod_mlp", "POD + MLP", true, true, 7},
     {"kernel", "kernel", false, false, 8},
 }};
+
+template <class Condition>
+std::vector<std::string> names_where(const Condition& holds) {
+  std::vector<std::string> names;
+  for (const auto& row : table)
+    if (holds(row)) names.emplace_back(row.name);
+  return names;
+}
 
 }  // namespace
 
@@ -28,18 +36,16 @@ const MethodInfo* find_method(std::string_view name) {
 }
 
 std::vector<std::string> method_names() {
-  std::vector<std::string> names;
-  for (const auto& row : table) names.emplace_back(row.name);
-  return names;
+  return names_where([](const MethodInfo&) { return true; });
 }
 
 const std::vector<std::string>& peer_names() {
-  static const auto names = [] {
-    std::vector<std::string> peers;
-    for (const auto& row : table)
-      if (row.peer) peers.emplace_back(row.name);
-    return peers;
-  }();
+  static const auto names = names_where([](const MethodInfo& row) { return row.peer; });
+  return names;
+}
+
+const std::vector<std::string>& closed_form_peers() {
+  static const auto names = names_where([](const MethodInfo& row) { return row.peer && !row.needs_trainer; });
   return names;
 }
 

@@ -1,21 +1,28 @@
 #include "elrom/methods/peers.hpp"
 
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/math/pod.hpp"
+#include "elrom/math/rbf.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/model/coefficient_models.hpp"
 #include "elrom/model/nearest_model.hpp"
 #include "elrom/model/pod_model.hpp"
+#include "pod_modes.hpp"
 
 namespace elrom::methods {
 
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// What every method sees of the training cases.
@@ -68,37 +75,34 @@ class Nearest final : public Peer {
   }
 };
 
-/// Standard deviation of what the kept modes leave of the training cases, per cell: what varies, less what
-/// the modes hold.
-VectorXd truncated_deviation(const MatrixF& values, std::span<const std::size_t> cases,
-                             const math::Pod& pod) {
-  VectorXd variance = math::column_moments(values, cases).deviation.cwiseAbs2();
-  for (Eigen::Index m = 0; m < pod.modes.rows(); ++m) {
-    variance -= pod.modes.row(m).transpose().cast<double>().cwiseAbs2() *
-                (pod.energies[m] / static_cast<double>(cases.size()));
-  }
-  return variance.cwiseMax(0).cwiseSqrt();
+/// What predicts the coefficients of the first modes, as many as the model has coefficients.
+using Coefficients = std::shared_ptr<const model::CoefficientModel>;
+
+VectorXd squared_columns(const MatrixXd& residuals) {
+  return residuals.cwiseAbs2().colwise().sum().transpose();
 }
 
-/// POD of the snapshots; what predicts the coefficients is the subclass's business.
+/// POD of the snapshots; what predicts the coefficients, and of how many modes, is the subclass's business.
 class PodPeer : public Peer {
  public:
   using Peer::Peer;
   [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const final {
-    const math::Pod pod = math::make_pod(data.values, cases, options().truncation, context.n_threads);
+    math::Pod pod = math::make_pod(data.values, cases, {.n_modes = options().most_modes}, context.n_threads);
     const TrainingInputs inputs = training_inputs(data, cases);
     if (pod.n_modes() == 0) return constant_field(pod.mean, inputs, data.cases->mesh.n_columns);
+    const Coefficients coefficients = fit_coefficients(inputs, pod.coefficients, context);
+    keep_modes(pod, static_cast<Eigen::Index>(coefficients->n_coefficients()));
     return model::make_pod_model(name(), pod.mean, pod.modes, truncated_deviation(data.values, cases, pod),
-                                 data.cases->mesh.n_columns,
-                                 fit_coefficients(inputs, pod.coefficients, context));
+                                 data.cases->mesh.n_columns, coefficients);
   }
 
  protected:
   /// @param coefficients of the training cases, zero mean, (n_cases, n_modes)
-  [[nodiscard]] virtual std::shared_ptr<const model::CoefficientModel> fit_coefficients(
-      const TrainingInputs& inputs, const Eigen::MatrixXd& coefficients, const FitContext& context) const = 0;
+  [[nodiscard]] virtual Coefficients fit_coefficients(const TrainingInputs& inputs,
+                                                      const MatrixXd& coefficients,
+                                                      const FitContext& context) const = 0;
 
  private:
   /// All cases are equal: one mode of zeros, since a model without modes has nothing to store.
@@ -116,13 +120,16 @@ class Linear final : public PodPeer {
   using PodPeer::PodPeer;
 
  protected:
-  [[nodiscard]] std::shared_ptr<const model::CoefficientModel> fit_coefficients(
-      const TrainingInputs& inputs, const Eigen::MatrixXd& coefficients, const FitContext&) const override {
+  [[nodiscard]] Coefficients fit_coefficients(const TrainingInputs& inputs, const MatrixXd& coefficients,
+                                              const FitContext&) const override {
     std::vector<double> penalties;
-    for (int i = -8; i <= 16; ++i) penalties.push_back(std::pow(10.0, 0.25 * i));
-    math::Ridge ridge = math::fit_ridge(inputs.standardised, coefficients, penalties);
-    return std::make_shared<model::LinearCoefficients>(
-        inputs.scaler, std::move(ridge.weights), std::move(ridge.intercept), std::move(ridge.loo_variance));
+    for (int i = -16; i <= 24; ++i) penalties.push_back(std::pow(10.0, 0.25 * i));
+    const math::Ridge all = math::fit_ridge_each(inputs.standardised, coefficients, penalties);
+    const Index n = predictable_modes(squared_columns(all.loo_residuals), squared_columns(coefficients));
+    MatrixD weights = all.weights.leftCols(n);
+    VectorXd intercept = all.intercept.head(n), variance = all.loo_variance.head(n);
+    return std::make_shared<model::LinearCoefficients>(inputs.scaler, std::move(weights),
+                                                       std::move(intercept), std::move(variance));
   }
 };
 
@@ -131,46 +138,217 @@ class Rbf final : public PodPeer {
   using PodPeer::PodPeer;
 
  protected:
-  [[nodiscard]] std::shared_ptr<const model::CoefficientModel> fit_coefficients(
-      const TrainingInputs& inputs, const Eigen::MatrixXd& coefficients, const FitContext&) const override {
-    const Eigen::MatrixXd left = math::rbf_leave_one_out(inputs.standardised, coefficients, options().rbf);
-    VectorXd variance = left.cwiseAbs2().colwise().mean().transpose();
+  [[nodiscard]] Coefficients fit_coefficients(const TrainingInputs& inputs, const MatrixXd& coefficients,
+                                              const FitContext&) const override {
+    using enum math::RadialFunction;
+    const VectorXd energies = squared_columns(coefficients);
+    const math::RbfOptions kernels[]{
+        {linear, 0, 0}, {linear, 0, 1}, {thin_plate_spline, 0, 1}, {cubic, 0, 1}};
+    Smoothed best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& kernel : kernels) {
+      Smoothed smoothed = smooth(kernel, inputs.standardised, coefficients);
+      const double error = least_error(smoothed.errors, energies);
+      if (error < least || best.errors.size() == 0) {
+        least = error;
+        best = std::move(smoothed);
+      }
+    }
+    const Index n = predictable_modes(best.errors, energies);
+    VectorXd variance = best.errors.head(n) / static_cast<double>(coefficients.rows());
     return std::make_shared<model::RbfCoefficients>(
-        inputs.scaler, math::RbfInterpolator(inputs.standardised, coefficients, options().rbf),
-        std::move(variance));
-  }
-};
-
-class Gp final : public PodPeer {
- public:
-  Gp(std::string name, PeerOptions options, bool per_mode)
-      : PodPeer(std::move(name), std::move(options)), per_mode_(per_mode) {}
-
- protected:
-  [[nodiscard]] std::shared_ptr<const model::CoefficientModel> fit_coefficients(
-      const TrainingInputs& inputs, const Eigen::MatrixXd& coefficients,
-      const FitContext& context) const override {
-    const VectorXd scale =
-        (coefficients.colwise().squaredNorm() / static_cast<double>(coefficients.rows())).cwiseSqrt();
-    const Eigen::MatrixXd targets = coefficients * scale.cwiseInverse().asDiagonal();
-    const math::GpFitOptions gp{.start_lengths = options().gp_start_lengths,
-                                .max_iterations = options().gp_iterations};
-    const auto n = static_cast<std::size_t>(per_mode_ ? targets.cols() : 1);
-    std::vector<math::GaussianProcess> processes(n);
-    base::parallel_for(
-        n, context.n_threads,
-        [&](std::size_t k, int) {
-          const Eigen::MatrixXd own =
-              per_mode_ ? Eigen::MatrixXd(targets.col(static_cast<Eigen::Index>(k))) : targets;
-          processes[k] =
-              math::GaussianProcess(inputs.standardised, own, math::fit_gp(inputs.standardised, own, gp));
-        },
-        context.stop);
-    return std::make_shared<model::GpCoefficients>(inputs.scaler, inputs.standardised, processes, scale);
+        inputs.scaler, interpolate(best, inputs.standardised, coefficients.leftCols(n)), std::move(variance));
   }
 
  private:
-  bool per_mode_;
+  /// One kernel with the best smoothing of each mode.
+  struct Smoothed {
+    math::RbfOptions kernel;
+    std::vector<double> smoothing;
+    VectorXd errors;  // summed over cases
+  };
+
+  [[nodiscard]] Smoothed smooth(math::RbfOptions kernel, const MatrixD& x, const MatrixXd& y) const {
+    constexpr double worst = std::numeric_limits<double>::max();
+    Smoothed best{kernel, std::vector<double>(static_cast<std::size_t>(y.cols())),
+                  VectorXd::Constant(y.cols(), std::numeric_limits<double>::infinity())};
+    for (int decade = 2; decade >= -options().smoothing_decades - 1; --decade) {
+      kernel.smoothing = decade < -options().smoothing_decades ? 0 : std::pow(10.0, decade);
+      const VectorXd errors = squared_columns(math::rbf_leave_one_out(x, y, kernel));
+      for (Index m = 0; m < y.cols(); ++m) {
+        const double error = std::isfinite(errors[m]) ? errors[m] : worst;
+        if (error >= best.errors[m]) continue;
+        best.errors[m] = error;
+        best.smoothing[static_cast<std::size_t>(m)] = kernel.smoothing;
+      }
+    }
+    return best;
+  }
+
+  [[nodiscard]] static math::RbfInterpolator interpolate(const Smoothed& smoothed, const MatrixD& x,
+                                                         const MatrixXd& y) {
+    MatrixD weights(x.rows(), y.cols()), tail;
+    for (Index m = 0; m < y.cols(); ++m) {
+      math::RbfOptions kernel = smoothed.kernel;
+      kernel.smoothing = smoothed.smoothing[static_cast<std::size_t>(m)];
+      const math::RbfInterpolator one(x, y.col(m), kernel);
+      if (m == 0) tail.resize(one.tail().rows(), y.cols());
+      weights.col(m) = one.weights().col(0);
+      tail.col(m) = one.tail().col(0);
+    }
+    return {smoothed.kernel.function, x, std::move(weights), std::move(tail)};
+  }
+};
+
+constexpr std::array covariances{math::Covariance::matern52, math::Covariance::matern32,
+                                 math::Covariance::gaussian};
+
+/// The coefficients of the training cases, each over its own deviation.
+struct GpTask {
+  const MatrixD& inputs;
+  VectorXd scale;
+  MatrixXd targets;
+
+  GpTask(const MatrixD& x, const MatrixXd& coefficients)
+      : inputs(x),
+        scale((coefficients.colwise().squaredNorm() / static_cast<double>(coefficients.rows())).cwiseSqrt()),
+        targets(coefficients * scale.cwiseInverse().asDiagonal()) {}
+
+  [[nodiscard]] VectorXd energies() const { return scale.cwiseAbs2() * static_cast<double>(targets.rows()); }
+  /// Squared leave-one-out error of modes from `first` on, in units of the energies.
+  [[nodiscard]] VectorXd errors(const math::GaussianProcess& process, Index first) const {
+    const VectorXd squares = squared_columns(process.leave_one_out_residuals());
+    return squares.cwiseProduct(scale.segment(first, squares.size()).cwiseAbs2());
+  }
+};
+
+/// The covariance of the least error(covariance).
+template <class Error>
+math::Covariance best_covariance(const Error& error) {
+  math::Covariance best = covariances.front();
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto covariance : covariances) {
+    const double found = error(covariance);
+    if (found < least) {
+      least = found;
+      best = covariance;
+    }
+  }
+  return best;
+}
+
+class Gp : public PodPeer {
+ public:
+  using PodPeer::PodPeer;
+
+ protected:
+  [[nodiscard]] math::GaussianProcess fit_process(const MatrixD& inputs, const MatrixXd& targets,
+                                                  math::Covariance covariance) const {
+    math::GpFitOptions gp{.covariance = covariance,
+                          .isotropic = true,
+                          .start_lengths = options().gp_start_lengths,
+                          .start_noises = options().gp_start_noises,
+                          .max_iterations = options().gp_iterations};
+    math::GpParameters best = math::fit_gp(inputs, targets, gp);
+    double least = information(inputs, targets, best, 3);
+    const auto isotropic = best;
+    gp.isotropic = false;
+    for (const bool near : {true, false}) {
+      gp.start_lengths = {near ? isotropic.length_scales[0] : options().gp_start_lengths.front()};
+      gp.start_noises = {near ? isotropic.noise_variance : options().gp_start_noises.front()};
+      math::GpParameters own = math::fit_gp(inputs, targets, gp);
+      const double found = information(inputs, targets, own, inputs.cols() + 2);
+      if (found >= least) continue;
+      least = found;
+      best = std::move(own);
+    }
+    return {inputs, targets, std::move(best)};
+  }
+
+ private:
+  /// Schwarz's (1978) criterion, halved: likelihood alone follows noise once inputs are many.
+  [[nodiscard]] static double information(const MatrixD& inputs, const MatrixXd& targets,
+                                          const math::GpParameters& parameters, Index n_parameters) {
+    VectorXd theta(inputs.cols() + 2), gradient;
+    theta << parameters.length_scales.array().log().matrix(), std::log(parameters.signal_variance),
+        std::log(parameters.noise_variance);
+    const auto n = static_cast<double>(targets.size());
+    return n * math::gp_negative_log_likelihood(inputs, targets, parameters.covariance, theta, gradient) +
+           0.5 * static_cast<double>(n_parameters) * std::log(n);
+  }
+};
+
+class SharedGp final : public Gp {
+ public:
+  using Gp::Gp;
+
+ protected:
+  [[nodiscard]] Coefficients fit_coefficients(const TrainingInputs& inputs, const MatrixXd& coefficients,
+                                              const FitContext&) const override {
+    const GpTask task(inputs.standardised, coefficients);
+    const MatrixXd first =
+        task.targets.leftCols(std::min<Index>(options().shared_modes, task.targets.cols()));
+    const auto covariance = best_covariance(
+        [&](math::Covariance kind) { return task.errors(fit_process(task.inputs, first, kind), 0).sum(); });
+    const math::GaussianProcess tried = fit_process(task.inputs, first, covariance);
+    const math::GaussianProcess all(task.inputs, task.targets, tried.parameters());
+    const Index n = predictable_modes(task.errors(all, 0), task.energies());
+    return std::make_shared<model::GpCoefficients>(
+        inputs.scaler, inputs.standardised,
+        std::vector{fit_process(task.inputs, task.targets.leftCols(n), covariance)}, task.scale.head(n));
+  }
+};
+
+class GpPerMode final : public Gp {
+ public:
+  using Gp::Gp;
+
+ protected:
+  [[nodiscard]] Coefficients fit_coefficients(const TrainingInputs& inputs, const MatrixXd& coefficients,
+                                              const FitContext& context) const override {
+    const GpTask task(inputs.standardised, coefficients);
+    const VectorXd energies = task.energies();
+    const Index n_chosen_by = std::min<Index>(options().covariance_modes, task.targets.cols());
+    const auto covariance = best_covariance([&](math::Covariance kind) {
+      const auto processes = fit_modes(task, 0, n_chosen_by, kind, context);
+      return errors_of(task, processes).sum();
+    });
+    std::vector<math::GaussianProcess> processes;
+    Index n = 0;
+    for (Index begin = 0; begin < task.targets.cols() && (begin == 0 || n > begin - options().mode_block);
+         begin += options().mode_block) {
+      const Index size = std::min<Index>(options().mode_block, task.targets.cols() - begin);
+      for (auto& process : fit_modes(task, begin, size, covariance, context))
+        processes.push_back(std::move(process));
+      n = predictable_modes(errors_of(task, processes), energies);
+    }
+    processes.resize(static_cast<std::size_t>(n));
+    return std::make_shared<model::GpCoefficients>(inputs.scaler, inputs.standardised, processes,
+                                                   task.scale.head(n));
+  }
+
+ private:
+  [[nodiscard]] std::vector<math::GaussianProcess> fit_modes(const GpTask& task, Index first, Index n,
+                                                             math::Covariance covariance,
+                                                             const FitContext& context) const {
+    std::vector<math::GaussianProcess> processes(static_cast<std::size_t>(n));
+    base::parallel_for(
+        processes.size(), context.n_threads,
+        [&](std::size_t k, int) {
+          processes[k] =
+              fit_process(task.inputs, task.targets.col(first + static_cast<Index>(k)), covariance);
+        },
+        context.stop);
+    return processes;
+  }
+
+  [[nodiscard]] static VectorXd errors_of(const GpTask& task,
+                                          const std::vector<math::GaussianProcess>& processes) {
+    VectorXd errors(static_cast<Index>(processes.size()));
+    for (Index m = 0; m < errors.size(); ++m)
+      errors[m] = task.errors(processes[static_cast<std::size_t>(m)], m)[0];
+    return errors;
+  }
 };
 
 }  // namespace
@@ -179,10 +357,11 @@ std::unique_ptr<Method> make_peer(std::string_view name, const PeerOptions& opti
   const std::string own(name);
   if (own == "nearest") return std::make_unique<Nearest>(own, options);
   if (own == "linear") return std::make_unique<Linear>(own, options);
-  if (own == "pod_gp") return std::make_unique<Gp>(own, options, false);
-  if (own == "pod_gp_per_mode") return std::make_unique<Gp>(own, options, true);
+  if (own == "pod_gp") return std::make_unique<SharedGp>(own, options);
+  if (own == "pod_gp_per_mode") return std::make_unique<GpPerMode>(own, options);
   if (own == "pod_rbf") return std::make_unique<Rbf>(own, options);
-  throw UsageError({.what = "unknown method '" + own + "'", .advice = base::name_advice(own, peer_names())});
+  throw UsageError(
+      {.what = "unknown method '" + own + "'", .advice = base::name_advice(own, closed_form_peers())});
 }
 
 }  // namespace elrom::methods

@@ -13,6 +13,7 @@
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/model/mlp_coefficients.hpp"
 #include "elrom/model/pod_model.hpp"
+#include "pod_modes.hpp"
 
 namespace elrom::methods {
 namespace {
@@ -96,15 +97,6 @@ Eigen::VectorXd squared_residuals(const model::Network& network, const networks:
   return (predicted - problem.validation_targets).cast<double>().cwiseAbs2().colwise().sum().transpose();
 }
 
-/// Standard deviation of what the kept modes leave of the snapshots, per cell.
-Eigen::VectorXd truncated_deviation(const Snapshots& snapshots, const math::Pod& pod) {
-  Eigen::VectorXd variance = math::column_moments(snapshots.values, snapshots.all_rows).deviation.cwiseAbs2();
-  for (Eigen::Index m = 0; m < pod.modes.rows(); ++m)
-    variance -= pod.modes.row(m).transpose().cast<double>().cwiseAbs2() *
-                (pod.energies[m] / static_cast<double>(snapshots.all_rows.size()));
-  return variance.cwiseMax(0).cwiseSqrt();
-}
-
 class PodMlp final : public Method {
  public:
   PodMlp(std::shared_ptr<const networks::Trainer> trainer, PodMlpOptions options)
@@ -121,16 +113,22 @@ class PodMlp final : public Method {
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const override {
     const Snapshots snapshots = take_snapshots(data, cases, options_.mirrors);
-    math::Pod pod = math::make_pod(snapshots.values, snapshots.all_rows, {.n_modes = options_.n_modes},
+    math::Pod pod = math::make_pod(snapshots.values, snapshots.all_rows, {.n_modes = options_.most_modes},
                                    context.n_threads);
     if (pod.n_modes() == 0) {  // all cases are equal: one mode of zeros, which no network moves
       pod.modes = MatrixF::Zero(1, data.values.cols());
       pod.coefficients = MatrixD::Zero(snapshots.values.rows(), 1);
       pod.energies = Eigen::VectorXd::Zero(1);
     }
-    return model::make_pod_model(name(), pod.mean, pod.modes, truncated_deviation(snapshots, pod),
-                                 data.cases->mesh.n_columns,
-                                 fit_coefficients(data, snapshots, pod.coefficients, context));
+    Built built = best_build(data, snapshots, pod.coefficients, context);
+    const auto n = predictable_modes(built.parts.variance, energies_of(pod.coefficients));
+    if (n < pod.modes.rows()) {
+      keep_modes(pod, n);
+      built = build(data, snapshots, pod.coefficients, *built.recipe, context);
+    }
+    return model::make_pod_model(
+        name(), pod.mean, pod.modes, truncated_deviation(snapshots.values, snapshots.all_rows, pod),
+        data.cases->mesh.n_columns, std::make_shared<model::MlpCoefficients>(std::move(built.parts)));
   }
 
   [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
@@ -148,10 +146,40 @@ class PodMlp final : public Method {
     return largest * share.pow(options_.equalise);
   }
 
-  [[nodiscard]] std::shared_ptr<const model::CoefficientModel> fit_coefficients(
-      const field::FieldData& data, const Snapshots& snapshots, const MatrixD& coefficients,
-      const FitContext& context) const {
+  struct Built {
     model::MlpCoefficients::Parts parts;
+    const PodMlpRecipe* recipe = nullptr;
+  };
+
+  /// Mean over the snapshots of each coefficient's square.
+  [[nodiscard]] static Eigen::VectorXd energies_of(const MatrixD& coefficients) {
+    return coefficients.cwiseAbs2().colwise().mean().transpose();
+  }
+
+  /// By the recipe of the least error. @throws NumericalError when all fail
+  [[nodiscard]] Built best_build(const field::FieldData& data, const Snapshots& snapshots,
+                                 const MatrixD& coefficients, const FitContext& context) const {
+    Built best;
+    const Eigen::VectorXd energies = energies_of(coefficients);
+    for (const auto& recipe : options_.recipes) {
+      Built built = build(data, snapshots, coefficients, recipe, context);
+      if (built.parts.builds.empty()) continue;
+      const bool better = best.recipe == nullptr || least_error(built.parts.variance, energies) <
+                                                        least_error(best.parts.variance, energies);
+      if (better) best = std::move(built);
+    }
+    if (best.recipe == nullptr)
+      throw NumericalError({.what = "every network of pod_mlp diverged",
+                            .where = data.info.name,
+                            .advice = "look for wild cells with elrom-data check"});
+    return best;
+  }
+
+  [[nodiscard]] Built build(const field::FieldData& data, const Snapshots& snapshots,
+                            const MatrixD& coefficients, const PodMlpRecipe& recipe,
+                            const FitContext& context) const {
+    Built built{.parts = {}, .recipe = &recipe};
+    auto& parts = built.parts;
     parts.inputs = model::InputScaler::fit(snapshots.inputs, options_.relevance);
     parts.scale = coefficient_scale(coefficients);
     Table table{MatrixF(snapshots.inputs.rows(), snapshots.inputs.cols()),
@@ -159,12 +187,13 @@ class PodMlp final : public Method {
     const auto n_inputs = static_cast<std::size_t>(snapshots.inputs.cols());
     for (Eigen::Index r = 0; r < snapshots.inputs.rows(); ++r)
       parts.inputs.apply({snapshots.inputs.row(r).data(), n_inputs}, {table.inputs.row(r).data(), n_inputs});
-    build(data, snapshots, table, parts, context);
-    return std::make_shared<model::MlpCoefficients>(std::move(parts));
+    train_builds(data, snapshots, table, recipe, parts, context);
+    return built;
   }
 
-  void build(const field::FieldData& data, const Snapshots& snapshots, const Table& table,
-             model::MlpCoefficients::Parts& parts, const FitContext& context) const {
+  void train_builds(const field::FieldData& data, const Snapshots& snapshots, const Table& table,
+                    const PodMlpRecipe& recipe, model::MlpCoefficients::Parts& parts,
+                    const FitContext& context) const {
     std::vector<std::size_t> cases(snapshots.n_cases);
     std::iota(cases.begin(), cases.end(), 0);
     const auto n_builds = static_cast<std::size_t>(options_.builds);
@@ -176,7 +205,7 @@ class PodMlp final : public Method {
         n_builds, context.n_trainings(),
         [&](std::size_t b, int) {
           const networks::TrainingProblem problem = problem_of(table, snapshots, folds[b % folds.size()]);
-          results[b] = trainer_->train(problem, options_.hyperparameters, options_.budget, seed.derive(b),
+          results[b] = trainer_->train(problem, recipe.hyperparameters, recipe.budget, seed.derive(b),
                                        nullptr, context.stop);
           networks::tell_divergence(
               results[b], name() + ", " + data.info.name + ", build " + std::to_string(b), *context.log);
@@ -192,11 +221,7 @@ class PodMlp final : public Method {
       sum += residuals[b];
       count += static_cast<double>(folds[b % folds.size()].size());
     }
-    if (parts.builds.empty())
-      throw NumericalError({.what = "every network of pod_mlp diverged",
-                            .where = data.info.name,
-                            .advice = "look for wild cells with elrom-data check"});
-    parts.variance = (sum / count).array() * parts.scale.array().square();
+    parts.variance = (sum / std::max(count, 1.0)).array() * parts.scale.array().square();
   }
 
   std::shared_ptr<const networks::Trainer> trainer_;
@@ -204,6 +229,20 @@ class PodMlp final : public Method {
 };
 
 }  // namespace
+
+std::vector<PodMlpRecipe> pod_mlp_recipes() {
+  const networks::Hyperparameters noisy{.learning_rate = 3e-3,
+                                        .n_layers = 2,
+                                        .n_units = 64,
+                                        .batch_size = 32,
+                                        .weight_decay = 1e-2,
+                                        .activation = model::Activation::tanh};
+  networks::Hyperparameters smooth = noisy;
+  smooth.weight_decay = 1e-4;
+  smooth.batch_size = 16;
+  smooth.learning_rate = 2e-3;
+  return {{noisy, {.max_epochs = 300, .patience = 40}}, {smooth, {.max_epochs = 2000, .patience = 150}}};
+}
 
 std::unique_ptr<Method> make_pod_mlp(std::shared_ptr<const networks::Trainer> trainer,
                                      const PodMlpOptions& options) {

@@ -11,7 +11,7 @@
 namespace elrom::report {
 
 std::vector<std::string> refittable_methods() {
-  auto names = methods::peer_names();
+  auto names = methods::closed_form_peers();
   names.push_back("kernel");
   return names;
 }

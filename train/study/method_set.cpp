@@ -44,9 +44,9 @@ MethodSet::MethodSet(const Settings& settings, Toolbox toolbox, const io::StageC
 }
 
 std::unique_ptr<methods::Method> MethodSet::make(const std::string& name) const {
+  if (name == "pod_mlp") return methods::make_pod_mlp(toolbox_.trainer, pod_mlp_options(settings_));
   if (is_peer(name)) return methods::make_peer(name);
   if (name == "kernel") return methods::make_kernel_method();
-  if (name == "pod_mlp") return methods::make_pod_mlp(toolbox_.trainer, pod_mlp_options(settings_));
   throw UsageError({.what = "unknown method '" + name + "'", .where = "method"});
 }
 
@@ -67,14 +67,21 @@ methods::NetworksMethod& MethodSet::networks() {
 
 std::vector<const methods::Method*> MethodSet::candidates() {
   std::vector<const methods::Method*> methods{&get("kernel")};
-  for (const auto& name : settings_.peers.methods) methods.push_back(&get(name));
+  for (const auto& name : peers()) methods.push_back(&get(name));
   if (settings_.peers.networks && has_networks()) methods.push_back(&get("networks"));
   return methods;
 }
 
+std::vector<std::string> MethodSet::peers() const {
+  std::vector<std::string> names;
+  for (const auto& name : settings_.peers.methods)
+    if (has_networks() || !needs_trainer(name)) names.push_back(name);
+  return names;
+}
+
 std::vector<std::string> MethodSet::bundles() const {
   std::vector<std::string> names{settings_.method};
-  for (const auto& name : settings_.peers.methods)
+  for (const auto& name : peers())
     if (name != settings_.method) names.push_back(name);
   if (settings_.peers.networks && has_networks() && settings_.method != "networks")
     names.push_back("networks");

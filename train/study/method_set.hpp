@@ -19,6 +19,8 @@ class MethodSet {
   [[nodiscard]] std::vector<const methods::Method*> candidates();
   /// Methods to write bundles of: the model's own first, then the peers.
   [[nodiscard]] std::vector<std::string> bundles() const;
+  /// Of the settings' peers those that this build can train.
+  [[nodiscard]] std::vector<std::string> peers() const;
   /// Whether networks take part in this method.
   [[nodiscard]] bool trains_networks(const std::string& name) const;
   [[nodiscard]] bool is_peer(const std::string& name) const;

@@ -189,7 +189,7 @@ struct Study::Impl {
     const bool networks_out = std::ranges::find(left_out, "networks", &LeftOut::name) != left_out.end();
     auto warm = earlier ? earlier->warm_start(data.info.name) : methods::WarmStart();
     if (earlier && methods.trains_networks(name) && !networks_out) warm.known = known_rows(data);
-    data.cases = methods.is_peer(name) ? &plain_cases : &cases;
+    data.cases = methods.is_peer(name) && name != settings.method ? &plain_cases : &cases;
     const FieldStageRequest request{
         .name = name,
         .candidates = methods.candidates_of(name),

@@ -20,10 +20,13 @@ struct GpParameters {
   Covariance covariance = Covariance::matern52;
 };
 
-/// Box of the search and its starting length scales, for inputs and targets of unit variance.
+/// Box of the search and its starts, for inputs and targets of unit variance.
 struct GpFitOptions {
   Covariance covariance = Covariance::matern52;
+  bool isotropic = false;                       ///< one length scale for all inputs
   std::vector<double> start_lengths{5.0, 2.0};  ///< one search from each; the best likelihood wins
+  std::vector<double> start_noises{
+      0.1};  ///< their noise variances; with fewer than starts, from the first again
   double lowest_length = 0.3, highest_length = 1e3;
   double lowest_noise = 1e-6, highest_noise = 3;
   int max_iterations = 100;

@@ -22,4 +22,8 @@ struct Ridge {
 /// @param x (n, n_inputs), standardised @param y (n, n_targets) @param penalties positive; one: no choice
 [[nodiscard]] Ridge fit_ridge(const MatrixD& x, const Eigen::MatrixXd& y, std::span<const double> penalties);
 
+/// The same with a penalty for each target, which `penalty` does not tell.
+[[nodiscard]] Ridge fit_ridge_each(const MatrixD& x, const Eigen::MatrixXd& y,
+                                   std::span<const double> penalties);
+
 }  // namespace elrom::math

@@ -23,5 +23,7 @@ struct MethodInfo {
 [[nodiscard]] const MethodInfo* find_method(std::string_view name);  ///< nullptr: none of ours
 [[nodiscard]] std::vector<std::string> method_names();
 [[nodiscard]] const std::vector<std::string>& peer_names();
+/// Those that need no trainer: what make_peer() makes.
+[[nodiscard]] const std::vector<std::string>& closed_form_peers();
 
 }  // namespace elrom::methods

@@ -1,6 +1,10 @@
 #pragma once
 // Peer "pod_mlp": POD of the snapshots, and a few small networks from the boundary conditions to the modes'
 // coefficients; their mean is the prediction.
+//
+// Every build stops early on a fold of cases of its own, so the builds' errors on those folds are a
+// cross-validation. It chooses, on training cases alone: of the recipes the one of the least error, and the
+// number of modes that leaves the least error of the field (a mode that is dropped errs by its energy).
 
 #include <memory>
 
@@ -9,16 +13,19 @@
 
 namespace elrom::methods {
 
+/// How the networks are trained.
+struct PodMlpRecipe {
+  networks::Hyperparameters hyperparameters;
+  networks::TrainingBudget budget;
+};
+
+/// For noisy fields, where a short training is the best regulariser; and for smooth ones.
+[[nodiscard]] std::vector<PodMlpRecipe> pod_mlp_recipes();
+
 struct PodMlpOptions {
-  std::size_t n_modes = 15;
+  std::size_t most_modes = 40;
   int builds = 5;  ///< each stops early on a fold of loads of its own, so that all cases build some of them
-  networks::Hyperparameters hyperparameters{.learning_rate = 3e-3,
-                                            .n_layers = 2,
-                                            .n_units = 64,
-                                            .batch_size = 32,
-                                            .weight_decay = 1e-2,
-                                            .activation = model::Activation::tanh};
-  networks::TrainingBudget budget{.max_epochs = 300, .patience = 40};
+  std::vector<PodMlpRecipe> recipes = pod_mlp_recipes();
   /// 0: coefficients share one scale, so the loss is the field's own error; 1: each has unit variance, so
   /// that weak modes count as much as strong ones; between: in between.
   double equalise = 0.5;
