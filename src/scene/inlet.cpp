@@ -152,12 +152,12 @@ class Recirculation final : public Effect {
 }  // namespace
 
 double Sizes::draw(base::Random& random) const {
-  if (spread == Spread::value) return mean;
+  if (spread == SizeSpread::value) return mean;
   const double width = std::sqrt(std::log1p(deviation * deviation / (mean * mean)));
   for (int k = 0; k < 10000; ++k) {
     const double normal = random.normal();
-    const double drawn = spread == Spread::normal ? mean + deviation * normal
-                                                  : mean * std::exp(width * normal - 0.5 * width * width);
+    const double drawn = spread == SizeSpread::normal ? mean + deviation * normal
+                                                      : mean * std::exp(width * normal - 0.5 * width * width);
     if (drawn >= smallest && drawn <= largest && drawn > 0) return drawn;
   }
   throw UsageError(Problem{.what = "hardly any diameter of this distribution lies within its range"});

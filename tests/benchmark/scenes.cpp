@@ -47,7 +47,7 @@ Outcome run(const std::string& text) {
   Outcome out{.spheres = p.size()};
   double before = energy, speed_mass = 0;
   for (std::size_t i = 0; i < p.size(); ++i)
-    speed_mass += p.mass[i] * std::sqrt(dot(get(p.velocity, i), get(p.velocity, i)));
+    speed_mass += p.mass[i] * std::sqrt(dot(scene::get(p.velocity, i), scene::get(p.velocity, i)));
   const double begin = processor_seconds();
   double checking = 0;
   while (!simulation.done()) {
@@ -77,7 +77,7 @@ Json json_of(const std::string& model, double step, const Outcome& out, double y
 }
 
 Json crossing_streams(bool small) {
-  const int number = small ? 2000 : 12000;
+  const int number = small ? 800 : 12000;
   Json table = Json::array();
   const auto dem = run(crossing(number, "dem", 1e-4));
   table.push_back(json_of("dem", 1e-4, dem, dem.collisions));
@@ -143,7 +143,7 @@ Json measure(const benchmark::Arguments& arguments) {
   json["helscm_spread_of_counts"] = most / least - 1;
   json["haff_e_0.8"] = haff(0.8, {0.983438, 0.851252, 0.638403, 0.295837}, arguments.small);
   json["haff_e_0.9"] = haff(0.9, {0.991210, 0.917064, 0.779390, 0.480650}, arguments.small);
-  const double n = arguments.small ? 2000 : 12000;
+  const double n = arguments.small ? 800 : 12000;
   json["swept_sphere_steps_per_second"] = n * 12000 / table[4]["seconds"].get<double>();
   return json;
 }

@@ -14,9 +14,10 @@
 
 namespace elrom::scene {
 
-enum class Spread { value, normal, lognormal };
-inline constexpr base::EnumNames<Spread, 3> spread_names{
-    "distribution", {{Spread::value, "value"}, {Spread::normal, "normal"}, {Spread::lognormal, "lognormal"}}};
+enum class SizeSpread { value, normal, lognormal };
+inline constexpr base::EnumNames<SizeSpread, 3> spread_names{
+    "distribution",
+    {{SizeSpread::value, "value"}, {SizeSpread::normal, "normal"}, {SizeSpread::lognormal, "lognormal"}}};
 
 enum class Arrangement { random, lattice };
 inline constexpr base::EnumNames<Arrangement, 2> arrangement_names{
@@ -24,7 +25,7 @@ inline constexpr base::EnumNames<Arrangement, 2> arrangement_names{
 
 /// Diameters, m.
 struct Sizes {
-  Spread spread = Spread::value;
+  SizeSpread spread = SizeSpread::value;
   double mean = 0, deviation = 0;
   double smallest = 0,
          largest = std::numeric_limits<double>::infinity();  ///< what lies beyond is drawn again
