@@ -85,7 +85,8 @@ std::map<std::string, Model> models_of(field::CaseSet& cases, const field::Field
   std::vector<std::size_t> rows(cases.n_cases());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   std::map<std::string, Model> models;
-  for (const auto& name : methods::closed_form_peers()) models[name] = methods::make_peer(name)->fit(data, rows, {});
+  for (const auto& name : methods::closed_form_peers())
+    models[name] = methods::make_peer(name)->fit(data, rows, {});
   const field::MirrorDeclaration left_right{
       .name = "left-right", .axis = 'x', .swap = {{"*_left", "*_right"}}};
   cases.mirrors = {field::resolve(left_right, cases.schema, cases.mesh)};
