@@ -17,7 +17,14 @@ std::map<std::string, std::string> names_of(const std::vector<std::string>& text
                         .found = "'" + text + "'",
                         .expected = "field=name, such as solid_velocity_x=phase-2-x-velocity"});
     }
-    names[base::trim(sides[0])] = base::trim(sides[1]);
+    const auto name = base::trim(sides[1]);
+    if (name.find_first_of(" \t") != std::string::npos)
+      throw UsageError(
+          {.what = "--names cannot be read", .found = "'" + name + "'", .expected = "a name without blanks"});
+    for (const auto& [field, other] : names)
+      if (other == name && field != base::trim(sides[0]))
+        throw UsageError({.what = "--names gives two fields one name", .found = "'" + name + "'"});
+    names[base::trim(sides[0])] = name;
   }
   return names;
 }

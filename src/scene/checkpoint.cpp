@@ -100,7 +100,8 @@ std::vector<double> counts_of(const State& s) {
 }  // namespace
 
 io::TensorFile Simulation::save() {
-  // A list of neighbours is not kept, so the run that goes on makes its own anew, as the one that is loaded does.
+  // A list of neighbours is not kept, so the run that goes on makes its own anew, as the one that is loaded
+  // does.
   mover_->forget();
   io::TensorFile file;
   io::write_kind(file, io::kinds::scene_checkpoint);

@@ -51,7 +51,8 @@ double clearance(const Body& body, const Vec& place, double radius) {
   return least;
 }
 
-// When the centre leaves a body on its path, counted from `place`; now where it is outside and moves on outwards.
+// When the centre leaves a body on its path, counted from `place`; now where it is outside and moves on
+// outwards.
 Domain::Exit exit_of(const Body& body, const Vec& place, const Vec& velocity, double radius) {
   Domain::Exit exit;
   for (const auto& side : body.sides) {

@@ -89,8 +89,9 @@ class FrozenGas final : public GasField {
         members[grid.at(grid.nearest({centres(c, 0), centres(c, 1), centres(c, 2)}))].push_back(
             static_cast<std::int32_t>(c));
     }
-    // The plane (linear in x, y, z) through the centres around a point that fits best, weighted by the inverse square
-    // of their distance, at the point; within the values found. The search widens until it finds some.
+    // The plane (linear in x, y, z) through the centres around a point that fits best, weighted by the
+    // inverse square of their distance, at the point; within the values found. The search widens until it
+    // finds some.
     [[nodiscard]] Vec fitted(const Grid& grid, const Index& at, const MatrixD& centres,
                              const MatrixD& velocities) const {
       const Eigen::Array3d step(grid.step[0], grid.step[1], grid.step[2]);

@@ -1,6 +1,6 @@
-// The source's detection: at the end of a step, spheres that overlap. Each collides once, with a partner that has
-// the mean velocity and direction of all that it overlaps; only its own velocity changes, so that momentum is lost, and a
-// pair that still overlaps after the next step counts again.
+// The source's detection: at the end of a step, spheres that overlap. Each collides once, with a partner
+// that has the mean velocity and direction of all that it overlaps; only its own velocity changes, so that
+// momentum is lost, and a pair that still overlaps after the next step counts again.
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
-// Many soft spheres: the discrete element method (Cundall & Strack 1979). A time step of the scene is cut into steps
-// that the contact law asks for. Each drifts half, takes the forces there, and drifts the other half, so that one
-// evaluation gives second order. Pairs come from lists of neighbours that last many steps; forces of contacts are computed
-// on threads and added in the order of the pairs.
+// Many soft spheres: the discrete element method (Cundall & Strack 1979). A time step of the scene is cut
+// into steps that the contact law asks for. Each drifts half, takes the forces there, and drifts the other
+// half, so that one evaluation gives second order. Pairs come from lists of neighbours that last many
+// steps; forces of contacts are computed on threads and added in the order of the pairs.
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-// Collisions at their exact times. Between forces spheres fly straight, so a step is a row of events in the order of
-// time: pairs that touch, spheres that meet a wall. A sphere is moved only when something happens to it, and its
-// next events are sought among its neighbours. A step is cut where the list of neighbours ends to hold; that changes
-// nothing in what happens.
+// Collisions at their exact times. Between forces spheres fly straight, so a step is a row of events in the
+// order of time: pairs that touch, spheres that meet a wall. A sphere is moved only when something happens
+// to it, and its next events are sought among its neighbours. A step is cut where the list of neighbours
+// ends to hold; that changes nothing in what happens.
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,8 @@ struct Event {
   }
 };
 
-// First contact of spheres d apart that move by w relative to each other; now for those that overlap and close in.
+// First contact of spheres d apart that move by w relative to each other; now for those that overlap and
+// close in.
 double contact_time(const Vec& d, const Vec& w, double reach) {
   const double closing = dot(d, w);
   if (!(closing < 0)) return never;

@@ -1,5 +1,5 @@
-// bench-scenes: counts of collisions over time steps by each model, soft spheres as the yardstick; Haff's law; energy;
-// sphere steps a second.
+// bench-scenes: counts of collisions over time steps by each model, soft spheres as the yardstick; Haff's
+// law; energy; sphere steps a second.
 #include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -20,7 +20,7 @@ struct Outcome {
   std::size_t spheres = 0;
 };
 
-// Two streams that cross at 20 degrees off the axis, 10 m/s, 12 ms, as particles.md section 9 has them.
+// Two streams that cross at 20 degrees off the axis, 10 m/s, 12 ms.
 std::string crossing(int number, const std::string& collisions, double step) {
   const double edge = 0.0145 * std::cbrt(number / 12000.0);
   const auto region = [&](const char* name, double low, double high) {
@@ -89,7 +89,8 @@ Json crossing_streams(bool small) {
   return table;
 }
 
-// MFiX-Exa's homogeneous cooling, in CGS: 5050 spheres of 0.01 cm in a cube of 64 diameters, temperature 1000 cm2/s2.
+// MFiX-Exa's homogeneous cooling, in CGS: 5050 spheres of 0.01 cm in a cube of 64 diameters, temperature
+// 1000 cm2/s2.
 Json haff(double restitution, const std::vector<double>& expected, bool small) {
   const std::vector<double> times{1, 10, 30, 100};
   const std::size_t n_times = small ? 2 : 4;

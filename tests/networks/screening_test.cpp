@@ -12,17 +12,17 @@ namespace elrom::networks {
 namespace {
 
 // Cases x planes of smooth columns: column c is a known function of two inputs, with noise growing with c.
-ScreeningData smooth_data(std::size_t n_cases, std::size_t n_planes, Eigen::Index n_columns) {
+ScreeningData smooth_data(std::size_t cases, std::size_t planes, Eigen::Index n_columns) {
   ScreeningData data;
-  const auto n = static_cast<Eigen::Index>(n_cases * n_planes);
+  const auto n = static_cast<Eigen::Index>(cases * planes);
   data.inputs = MatrixF(n, 3);
   data.targets = MatrixF(n, n_columns);
-  data.n_planes = n_planes;
+  data.n_planes = planes;
   base::Random random(base::Seed(7));
-  for (std::size_t i = 0; i < n_cases; ++i) {
+  for (std::size_t i = 0; i < cases; ++i) {
     const double a = random.uniform(-1.7, 1.7), b = random.uniform(-1.7, 1.7);
-    for (std::size_t p = 0; p < n_planes; ++p) {
-      const auto r = static_cast<Eigen::Index>(i * n_planes + p);
+    for (std::size_t p = 0; p < planes; ++p) {
+      const auto r = static_cast<Eigen::Index>(i * planes + p);
       data.inputs.row(r) << static_cast<float>(a), static_cast<float>(b), static_cast<float>(p) / 3.0F - 1.0F;
       for (Eigen::Index c = 0; c < n_columns; ++c) {
         const double noise = static_cast<double>(c) / static_cast<double>(n_columns);

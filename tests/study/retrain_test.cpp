@@ -94,6 +94,35 @@ TEST_F(Retraining, ARunDoesNotBringARefusedBundleIn) {
   EXPECT_EQ(test::read_bytes(model()), before);
 }
 
+TEST_F(Retraining, AModelThatLostFieldsIsRefused) {
+  fit("linear");
+  const auto fields = model::BundleReader(model()).info().fields;
+  ASSERT_GT(fields.size(), 1u);
+  auto fewer = settings("linear");
+  fewer.fields = {fields.front().name};
+
+  const auto report = retrain(folder_.path(), fewer, {}, silent_log(), {}, false);
+
+  EXPECT_FALSE(report.promoted());
+  ASSERT_TRUE(report.promotion.verdict);
+  EXPECT_THAT(report.promotion.verdict->what_is_worse(), ::testing::Contains("no " + fields.back().name));
+  EXPECT_EQ(model::BundleReader(model()).info().fields.size(), fields.size());
+}
+
+TEST_F(Retraining, AModelOfAnotherMeshIsRefused) {
+  fit("linear");
+  std::filesystem::remove(store_path());
+  write_small_store(store_path(), 20, 0, small_furnace(), field::make_furnace_mesh({}, 2, 4, 4));
+  test::RecordingLog log;
+
+  const auto report = retrain(folder_.path(), settings("linear"), {}, log, {});
+
+  EXPECT_FALSE(report.promoted());
+  EXPECT_FALSE(report.promotion.verdict);
+  EXPECT_THAT(log.text(), ::testing::HasSubstr("is the store that of this study?"));
+  EXPECT_EQ(Versions(folder_.path()).current(), 1);
+}
+
 TEST_F(Retraining, JudgingCasesThatWereTrainedOnIsTold) {
   test::RecordingLog log;
   fit("linear", false);

@@ -23,8 +23,8 @@ inline field::Furnace small_furnace() {
 /// Cases with loads from 0.4 to 1.0; field values are smooth functions of load, a second input, height and
 /// column. Every fifth case is named "load_*", as held-out cases are.
 inline void write_small_store(const std::filesystem::path& path, std::size_t n_cases, std::size_t first = 0,
-                              const std::optional<field::Furnace>& furnace = small_furnace()) {
-  const auto mesh = field::make_furnace_mesh({}, 2, 3, 4);
+                              const std::optional<field::Furnace>& furnace = small_furnace(),
+                              const field::Mesh& mesh = field::make_furnace_mesh({}, 2, 3, 4)) {
   const field::InputSchema schema(
       {{"air", "kg/s", "kg/s"}, {"fuel", "kg/s", "kg/s"}, {"constant", "1", "1"}});
   const std::vector<field::FieldInfo> fields{field::field_info("pressure", "Pa"),

@@ -14,6 +14,20 @@
 namespace elrom::programs {
 namespace {
 
+double seconds_of(const std::string& budget) {
+  double seconds = 0;
+  try {
+    seconds = base::quantity(budget, "s");
+  } catch (const InputError&) {
+    seconds = 0;
+  }
+  if (!(seconds > 0))
+    throw UsageError({.what = "no time to train in --budget",
+                      .found = "'" + budget + "'",
+                      .expected = "one number and its unit, such as 90s, 10min or 1.5h"});
+  return seconds;
+}
+
 void print_outcomes(const std::vector<study::FieldOutcome>& outcomes) {
   fmt::print("{:<24} {:>10}  {}\n", "field", "NRMSE (cv)", "method");
   double sum = 0;
@@ -72,9 +86,7 @@ void add_training(cli::App& app, Work& run, const std::string& name, const std::
       "time to spend at most, \"10min\": what buys most is done first, the rest is left out and named");
   command->callback([&run, arguments, budget, with_peers] {
     run = [arguments, budget, with_peers] {
-      const auto seconds = budget->empty() ? 0.0 : base::quantity(*budget, "s");
-      if (!budget->empty() && !(seconds > 0))
-        throw UsageError({.what = "no time to train in", .where = "--budget", .found = *budget});
+      const auto seconds = budget->empty() ? 0.0 : seconds_of(*budget);
       return in_study(*arguments,
                       [&](const study::Settings& settings, const study::Toolbox& tools, Log& log) {
                         if (seconds > 0)

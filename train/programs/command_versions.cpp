@@ -32,6 +32,8 @@ std::string worse_fields(const Json& verdict) {
       worse.push_back(fmt::format("{} {} -> {}", field["field"].get<std::string>(), shown(field["before"]),
                                   shown(field["after"])));
   if (verdict["verdict"] == "worse") worse.emplace_back("the mean over fields");
+  for (const auto& field : verdict.value("missing", Json::array()))
+    worse.push_back("no " + field.get<std::string>());
   return base::join(worse, ", ");
 }
 
@@ -44,6 +46,8 @@ void print_event(const study::VersionEvent& event) {
     fmt::print(", error {} -> {} on {} {}", shown(verdict["before"]), shown(verdict["after"]),
                verdict["cases"].size(), verdict["judged_on"].get<std::string>());
     if (!event.promoted) fmt::print("; worse: {}", worse_fields(verdict));
+  } else if (!event.promoted) {
+    fmt::print(", not to be compared with the present one");
   }
   fmt::print("\n");
 }
@@ -140,10 +144,12 @@ int tell(const study::Promotion& promotion, const path& folder) {
     fmt::print("version {} answers already: the same model\n", promotion.number);
   } else if (promotion.kind == Kind::refused) {
     fmt::print(
-        "not promoted: version {} is kept and does not answer; worse: {}. "
+        "not promoted: version {} is kept and does not answer; {}. "
         "elrom-train promote {} {} makes it answer all the same\n",
-        promotion.number, base::join(promotion.verdict->what_is_worse(), ", "), folder.string(),
-        promotion.number);
+        promotion.number,
+        promotion.verdict ? "worse: " + base::join(promotion.verdict->what_is_worse(), ", ")
+                          : "it cannot be compared with the present one",
+        folder.string(), promotion.number);
     return static_cast<int>(ExitStatus::refused);
   } else {
     fmt::print("version {} answers{}\n", promotion.number, promotion.kind == Kind::first ? "" : ": promoted");

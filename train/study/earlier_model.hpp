@@ -34,9 +34,10 @@ class EarlierModel {
   /// Nothing is known of a field that the bundle lacks.
   [[nodiscard]] methods::WarmStart warm_start(const std::string& field) const;
 
-  /// Rows of the present cases that a field's networks go on from (WarmStart::known): those that they were last
-  /// planned and trained from nothing with. Empty where networks had no part in the contest, where one of those
-  /// cases has left or changed, where settings have, or where there are more than `growth` times as many by now.
+  /// Rows of the present cases that a field's networks go on from (WarmStart::known): those that they were
+  /// last planned and trained from nothing with. Empty where networks had no part in the contest, where one
+  /// of those cases has left or changed, where settings have, or where there are more than `growth` times
+  /// as many by now.
   [[nodiscard]] std::vector<std::size_t> known_rows(const std::string& field, const PresentStudy& now) const;
 
   /// Candidates of "auto" that stay out: no part of the earlier model, and their cross-validated error was

@@ -50,14 +50,15 @@ std::span<const float> row(const MatrixF& values, Index i) {
   return {values.row(i).data(), static_cast<std::size_t>(values.cols())};
 }
 
+bool has_field(const std::vector<field::FieldInfo>& fields, const std::string& name) {
+  return std::ranges::find(fields, name, &field::FieldInfo::name) != fields.end();
+}
+
 std::vector<std::string> common_fields(const model::BundleInfo& a, const model::BundleInfo& b,
                                        const field::SnapshotStore& store) {
   std::vector<std::string> names;
-  const auto has = [](const std::vector<field::FieldInfo>& fields, const std::string& name) {
-    return std::ranges::find(fields, name, &field::FieldInfo::name) != fields.end();
-  };
   for (const auto& info : b.fields)
-    if (has(a.fields, info.name) && has(store.fields(), info.name)) names.push_back(info.name);
+    if (has_field(a.fields, info.name) && has_field(store.fields(), info.name)) names.push_back(info.name);
   return names;
 }
 
@@ -290,6 +291,7 @@ std::vector<std::string> GateVerdict::what_is_worse() const {
   for (const auto& one : fields)
     if (one.change == Change::worse) names.push_back(one.field);
   if (mean.change == Change::worse) names.emplace_back("the mean over fields");
+  for (const auto& field : missing) names.push_back("no " + field);
   return names;
 }
 
@@ -305,6 +307,8 @@ std::optional<GateVerdict> judge(const std::filesystem::path& present, const std
     return holds(before.info().cases, name) || holds(after.info().cases, name);
   });
   GateVerdict verdict;
+  for (const auto& info : before.info().fields)
+    if (!has_field(after.info().fields, info.name)) verdict.missing.push_back(info.name);
   if (!judged.scored.empty()) {
     verdict.judged_on = "held-out cases";
     verdict.scatter_from = judged.repeats.empty() ? "errors" : "repeated runs";
@@ -330,7 +334,8 @@ std::string to_json(const GateVerdict& verdict) {
             {"after", number_or_null(verdict.mean.after)},
             {"scatter", number_or_null(verdict.mean.scatter)},
             {"verdict", name_of(verdict.mean.change)},
-            {"passed", verdict.passed}};
+            {"passed", verdict.passed},
+            {"missing", verdict.missing}};
   json["fields"] = Json::array();
   for (const auto& one : verdict.fields)
     json["fields"].push_back({{"field", one.field},

@@ -110,7 +110,8 @@ RetrainReport retrain(const std::filesystem::path& folder, const Settings& setti
       report.nothing_new = report.promotion.kind == Promotion::Kind::unchanged;
     }
     report.seconds = since(begin);
-    if (const auto added = new_cases(study, earlier.cases); !added.empty() && !report.nothing_new)
+    if (const auto added = new_cases(study, earlier.cases);
+        !added.empty() && report.promotion.verdict && !report.nothing_new)
       report.effects = effects_of(added, present, study.gate_cases(), settings.n_threads());
   }
   if (compare) report.seconds_from_nothing = seconds_from_nothing(folder, settings, toolbox, log, stop);

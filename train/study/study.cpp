@@ -320,8 +320,10 @@ struct Study::Impl {
       promotion.verdict = judge(versions.file(*current), versions.file(promotion.number),
                                 {store, rows.building, rows.held_out}, settings.gate, settings.n_threads());
       if (!promotion.verdict)
-        log.warning("the present model is of another mesh or other boundary conditions: nothing to compare");
-      const bool passed = !promotion.verdict || promotion.verdict->passed;
+        log.warning(
+            "the present model is of another mesh, other boundary conditions or other fields: nothing to compare; "
+            "is the store that of this study?");
+      const bool passed = promotion.verdict && promotion.verdict->passed;
       promotion.kind = passed ? Promotion::Kind::promoted : Promotion::Kind::refused;
     }
     versions.record({.number = promotion.number,
@@ -339,7 +341,7 @@ struct Study::Impl {
   field::SnapshotStore store;
   HeldOut rows;
   Promotion promotion;
-  std::optional<EarlierModel> earlier;  // retraining only
+  std::optional<EarlierModel> earlier;                         // retraining only
   std::optional<std::vector<model::UsualFigure>> usual_audit;  // of the building cases, when first asked for
   field::CaseSet cases, plain_cases;
   std::vector<field::FieldInfo> fields;

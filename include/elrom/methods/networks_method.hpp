@@ -2,11 +2,11 @@
 // The source's method for one field: screen every column, sort the columns into bands, search each band's
 // hyperparameters, build each band's network several times.
 //
-// With a warm start the plan is that of the cases known before, and every network of the model goes on from the
-// one that was trained on those. Cross-validation trains nothing: its networks are those of the known cases, and
-// a further case is predicted by those that did not see its neighbours in load either. They lack the further
-// cases, so that the error is a little too large, never too small. What was known before is taken from the
-// cache, or made again.
+// With a warm start the plan is that of the cases known before, and every network of the model goes on from
+// the one that was trained on those. Cross-validation trains nothing: its networks are those of the known
+// cases, and a further case is predicted by those that did not see its neighbours in load either. They lack
+// the further cases, so that the error is a little too large, never too small. What was known before is
+// taken from the cache, or made again.
 
 #include <memory>
 #include <string>

@@ -3,16 +3,18 @@
 // run it: no mirror images, inputs standardised one by one, POD of the snapshots as they are.
 //
 // What a peer may choose it chooses on its training cases, by these rules. "Error" is the squared error of
-// coefficients of cases left out, in closed form (Allen 1974; Rippa 1999; Rasmussen & Williams 2006, eqs. 5.10
-// to 5.12), summed over cases; of a mode that is not kept it is the mode's energy.
+// coefficients of cases left out, in closed form (Allen 1974; Rippa 1999; Rasmussen & Williams 2006, eqs.
+// 5.10 to 5.12), summed over cases; of a mode that is not kept it is the mode's energy.
 //   modes             the first n that leave the least error, at most `most_modes`
 //   linear            ridge, a penalty for each mode: the least error
-//   pod_rbf           smoothing for each mode: the least error; function and degree of the tail, shared by all
+//   pod_rbf           smoothing for each mode: the least error; function and degree of the tail, shared by
+// all
 //                     modes: the least error (linear, with a constant or a linear tail; thin plate; cubic)
 //   pod_gp, per_mode  length scales, signal and noise by likelihood, with one length scale for all inputs (of
 //                     `gp_start_lengths` the best) and with one each (from where that ended, and from the
 //                     first of them): of the three the least information criterion (Schwarz 1978). Covariance
-//                     (Matern 3/2, Matern 5/2, Gaussian), shared by all modes: the least error of the first `shared_modes` or
+//                     (Matern 3/2, Matern 5/2, Gaussian), shared by all modes: the least error of the first
+// `shared_modes` or
 //                     `covariance_modes`. Per mode: in blocks, until one gains nothing
 // pod_mlp, which needs a trainer, has a header of its own.
 

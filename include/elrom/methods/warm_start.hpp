@@ -20,7 +20,8 @@ struct WarmStart {
   std::string parent;                              ///< digest of the bundle that the model is from
   std::shared_ptr<const model::FieldModel> model;  ///< nullptr: nothing is known
   /// Rows of the cases, ascending, that networks were planned, trained and cross-validated with before: these
-  /// results are in the study's cache, and each network goes on from its own. Empty: networks begin from nothing.
+  /// results are in the study's cache, and each network goes on from its own. Empty: networks begin from
+  /// nothing.
   std::vector<std::size_t> known = {};
 
   /// Of all that a result takes from here.

@@ -71,8 +71,8 @@ class Trainer {
   virtual ~Trainer() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] std::string key() const { return name(); }  ///< in the keys of stages that train
-  /// The same arguments give the same bits. Weights that the training begins at do not count as an epoch: what
-  /// comes out has seen these records. @param checkpoint file to resume from and to save to; empty: none
+  /// The same arguments give the same bits. Weights that the training begins at do not count as an epoch:
+  /// what comes out has seen these records. @param checkpoint file to resume from and to save to; empty: none
   /// @throws Interrupted on `stop`
   [[nodiscard]] virtual TrainingResult train(const TrainingProblem& problem,
                                              const Hyperparameters& hyperparameters,

@@ -67,7 +67,8 @@ struct AccuracyReport;
 /// Adds what one evaluated study tells. Opens and predicts each bundle a few times: some seconds.
 void add_points(CostReport& report, const AccuracyReport& accuracy, bool peers);
 
-/// Every method that needs no search, fitted to a few sizes of a study's cases, three draws each. Half a minute.
+/// Every method that needs no search, fitted to a few sizes of a study's cases, three draws each. Half a
+/// minute.
 void add_sizes(CostReport& report, const CostOptions& options, Log& log, const std::stop_token& stop = {});
 
 /// What follows from the points, a sentence each: the front, what each costly method buys, and the reference.

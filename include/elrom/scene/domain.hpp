@@ -2,11 +2,11 @@
 // Where spheres may be: the union of bodies with six plane sides (boxes and boxes whose top is narrower or
 // wider than their bottom, turned as one likes). What is inside no body is wall.
 //
-// Each side is a wall, unless it is an outlet (spheres whose centre passes leave) or an opening (a side that a
-// body shares with its neighbour). A body that reaches into its neighbour by more than a sphere's diameter needs no
-// opening: there the deeper body counts. The distance to the wall is the largest over the bodies of the smallest
-// over their sides; it grows by one metre a metre, is exact inside a convex domain, and falls short of the
-// distance to an edge that points inwards.
+// Each side is a wall, unless it is an outlet (spheres whose centre passes leave) or an opening (a side
+// that a body shares with its neighbour). A body that reaches into its neighbour by more than a sphere's
+// diameter needs no opening: there the deeper body counts. The distance to the wall is the largest over the
+// bodies of the smallest over their sides; it grows by one metre a metre, is exact inside a convex domain,
+// and falls short of the distance to an edge that points inwards.
 //
 // A domain without bodies is all of space. One whose single body is an upright box may be periodic.
 // Thread rule: const use from any thread.
@@ -62,7 +62,8 @@ class Domain {
  public:
   Domain() = default;  ///< all of space
   /// @param openings, outlets "channel.z_high" @param periodic "x", "y", "z"
-  /// @throws UsageError for a name that no body or side has, and for periodic sides of anything but one upright box
+  /// @throws UsageError for a name that no body or side has, and for periodic sides of anything but one
+  /// upright box
   explicit Domain(std::vector<Body> bodies, const std::vector<std::string>& outlets = {},
                   const std::vector<std::string>& openings = {},
                   const std::vector<std::string>& periodic = {});

@@ -1,9 +1,9 @@
 #pragma once
-// What a scene names: one list of effects, built once, applied in the order of their phases. What a scene does not
-// name is not in the list: it is not computed, not allocated and not loaded.
+// What a scene names: one list of effects, built once, applied in the order of their phases. What a scene
+// does not name is not in the list: it is not computed, not allocated and not loaded.
 //
-// Forces add to state.push (m/s2), which exists only where there is one; movers take it through the step, or get it as a
-// kick of half a step before and after their straight paths (Strang splitting, second order).
+// Forces add to state.push (m/s2), which exists only where there is one; movers take it through the step,
+// or get it as a kick of half a step before and after their straight paths (Strang splitting, second order).
 //
 // Thread rule: one thread calls; apply() may use threads of its own, and gives the same bits for any number.
 
@@ -48,8 +48,8 @@ class Effect {
 enum class DragLaw { stokes, schiller_naumann };
 inline constexpr base::EnumNames<DragLaw, 2> drag_names{
     "drag law", {{DragLaw::stokes, "stokes"}, {DragLaw::schiller_naumann, "schiller_naumann"}}};
-/// After all other forces: with rate b = drag / mass and the others' acceleration a, the velocity moves towards
-/// u + a/b as exp(-b t), which is exact for a constant rate and has the right rest state at any step.
+/// After all other forces: with rate b = drag / mass and the others' acceleration a, the velocity moves
+/// towards u + a/b as exp(-b t), which is exact for a constant rate and has the right rest state at any step.
 /// @param field lives longer
 [[nodiscard]] std::unique_ptr<Effect> drag(DragLaw law, const particle::Gas& gas, const GasField& field,
                                            int n_threads);

@@ -23,9 +23,10 @@ class GasField {
 
 [[nodiscard]] std::unique_ptr<GasField> uniform_gas(const Vec& velocity);
 
-/// A field given at scattered centres (cells of a mesh), resampled onto a regular grid as fine as the centres are dense,
-/// and trilinear between its points. Outside of the centres' box: as at its nearest side.
-/// @param centres (n, 3), m @param velocities (n, 3), m/s @throws InputError for none, or values that are not finite
+/// A field given at scattered centres (cells of a mesh), resampled onto a regular grid as fine as the
+/// centres are dense, and trilinear between its points. Outside of the centres' box: as at its nearest side.
+/// @param centres (n, 3), m @param velocities (n, 3), m/s @throws InputError for none, or values that are
+/// not finite
 [[nodiscard]] std::unique_ptr<GasField> frozen_gas(const MatrixD& centres, const MatrixD& velocities,
                                                    int n_threads);
 /// The gas velocities of a prediction (elrom-predict, .hdf). @throws InputError

@@ -1,9 +1,10 @@
 #pragma once
-// Where spheres come from and go to: injection into regions without overlap, at once or over time; outlets; and
-// recirculation, by which what left in a step comes back in the next, the same spheres with the same diameters.
+// Where spheres come from and go to: injection into regions without overlap, at once or over time; outlets;
+// and recirculation, by which what left in a step comes back in the next, the same spheres with the same
+// diameters.
 //
-// A sphere's diameter, place and velocity follow from the seed, its group and its number in it, so that they depend
-// neither on threads nor on when a run was stopped and resumed.
+// A sphere's diameter, place and velocity follow from the seed, its group and its number in it, so that
+// they depend neither on threads nor on when a run was stopped and resumed.
 
 #include <cstdint>
 #include <optional>

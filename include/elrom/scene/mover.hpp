@@ -1,10 +1,12 @@
 #pragma once
-// How spheres move through a time step, with their collisions: one seam, one implementation a collision model.
+// How spheres move through a time step, with their collisions: one seam, one implementation a collision
+// model.
 //
 //   none              straight paths; spheres pass through each other
 //   dem               soft spheres: contact forces, with history, in steps that the contact law asks for
 //   helscm            swept: collisions at their exact times on straight paths, by a collision model
-//   helscm_document   the source's: at the end of the step, spheres that overlap collide once with the mean of
+//   helscm_document   the source's: at the end of the step, spheres that overlap collide once with the mean
+// of
 //                     their partners. Its count depends on the step; kept to be compared with.
 //
 // In all of them the walls reflect at the exact time, except in dem with walls that are contacts.
@@ -93,8 +95,8 @@ struct MoverSettings {
   particle::ContactLaw law;
   /// For helscm and helscm_document.
   std::shared_ptr<const particle::CollisionModel> model = {};
-  /// helscm: a sphere that collides again within this time loses no energy in it (Luding & McNamara 1998), so that
-  /// spheres at rest on each other do not collide for ever, s
+  /// helscm: a sphere that collides again within this time loses no energy in it (Luding & McNamara 1998),
+  /// so that spheres at rest on each other do not collide for ever, s
   double contact_time = 0;
   int steps_per_contact = 20;  ///< dem
   int n_threads = 1;

@@ -1,9 +1,9 @@
 #pragma once
-// Which spheres are near which: pairs whose surfaces are nearer than a skin, found by cells. The list holds for as
-// long as no two spheres have come nearer to each other than it by more than the skin.
+// Which spheres are near which: pairs whose surfaces are nearer than a skin, found by cells. The list holds
+// for as long as no two spheres have come nearer to each other than it by more than the skin.
 //
-// Spheres are sorted into levels by size (a factor of two each) with cells of their own size, so that a few large
-// spheres among many small ones cost no more than their share.
+// Spheres are sorted into levels by size (a factor of two each) with cells of their own size, so that a few
+// large spheres among many small ones cost no more than their share.
 //
 // Thread rule: build() uses threads of its own; the list is the same for any number of them.
 

@@ -1,5 +1,6 @@
 #pragma once
-// A scene's run as a piece of long work: outputs in a folder, checkpoints, progress, and going on after a crash.
+// A scene's run as a piece of long work: outputs in a folder, checkpoints, progress, and going on after a
+// crash.
 //
 //   DIR/checkpoint.elrom     the state; a run that was killed goes on from it and gives the same bytes
 //   DIR/series.csv           a row an output: spheres, mass, energy, collisions ...
@@ -22,12 +23,14 @@ struct SceneRun {
   std::vector<std::string> files;
 };
 
-/// Runs to the end. @throws UsageError when another process works in the folder; InputError for a checkpoint of another
-/// scene; NumericalError; Interrupted on `stop`: the next run goes on from the last checkpoint
+/// Runs to the end. @throws UsageError when another process works in the folder; InputError for a
+/// checkpoint of another scene; NumericalError; Interrupted on `stop`: the next run goes on from the last
+/// checkpoint
 SceneRun run(Simulation& simulation, const std::filesystem::path& folder, Log& log,
              const std::stop_token& stop);
 
-/// Spheres as ParaView opens them (VTK XML, raw): points with diameter, velocity, group and id. Appears whole.
+/// Spheres as ParaView opens them (VTK XML, raw): points with diameter, velocity, group and id. Appears
+/// whole.
 void write_vtp(const std::filesystem::path& path, const Particles& particles, const Domain& domain);
 
 }  // namespace elrom::scene

@@ -1,5 +1,6 @@
 #pragma once
-// A scene that runs: the list of effects made from its settings, the state that they change, steps, checkpoints.
+// A scene that runs: the list of effects made from its settings, the state that they change, steps,
+// checkpoints.
 //
 // Thread rule: one thread calls; steps use threads of their own, and give the same bits for any number.
 
@@ -22,7 +23,8 @@ struct EffectCost {
 class Simulation {
  public:
   /// Reads what the effects need, places the spheres that are there at the start.
-  /// @throws UsageError, InputError for what cannot be: no room for the spheres, an unknown region, friction with ...
+  /// @throws UsageError, InputError for what cannot be: no room for the spheres, an unknown region,
+  /// friction with ...
   Simulation(SceneSettings settings, int n_threads);
   ~Simulation();
   Simulation(const Simulation&) = delete;

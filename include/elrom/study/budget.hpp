@@ -1,8 +1,8 @@
 #pragma once
 // A run within a given time: what it is spent on, most valuable first. A cost model says what fits: the
 // kernel is fitted once to one field, on this machine and as busy as it is now, and everything else follows
-// from that by counting fits. What has run then tells how far off that was, and what is left of the time goes to
-// what fits now. What was left out is said, with what it would take.
+// from that by counting fits. What has run then tells how far off that was, and what is left of the time
+// goes to what fits now. What was left out is said, with what it would take.
 //
 // The choice is settings, which stand in resolved.toml as if they had been
 // asked for, so that the same run can be repeated without a budget.
@@ -51,9 +51,10 @@ struct BudgetRun {
   double pace = 1;                  ///< seconds that levels took, as a multiple of those expected
 };
 
-/// The level to run next: the dearest that fits into the time left, of those dearer than what is done; networks
-/// only after a model that stands. Where none fits the next one, as long as it may: it is stopped in time, and a later run goes on from there.
-/// With nothing done the dearest that is sure to fit, which the first always is.
+/// The level to run next: the dearest that fits into the time left, of those dearer than what is done;
+/// networks only after a model that stands. Where none fits the next one, as long as it may: it is stopped
+/// in time, and a later run goes on from there. With nothing done the dearest that is sure to fit, which
+/// the first always is.
 /// @param seconds left @param run done and pace so far
 [[nodiscard]] std::optional<std::size_t> next_level(const std::vector<BudgetLevel>& levels, double seconds,
                                                     const BudgetRun& run);
@@ -61,9 +62,9 @@ struct BudgetRun {
 /// What was not run, what it would take and what it may buy, a sentence each; never empty.
 [[nodiscard]] std::vector<std::string> left_out(const std::vector<BudgetLevel>& levels, const BudgetRun& run);
 
-/// Runs levels by `train`, each from where the last left the folder, as long as one fits. One that is not done
-/// when the time is up is stopped; the one before it is then the result, or where there is none POD + RBF, which
-/// takes seconds.
+/// Runs levels by `train`, each from where the last left the folder, as long as one fits. One that is not
+/// done when the time is up is stopped; the one before it is then the result, or where there is none POD +
+/// RBF, which takes seconds.
 /// @param train one run with these settings, that ends with Interrupted when it is stopped
 /// @throws Interrupted on `stop`; what `train` throws
 [[nodiscard]] BudgetRun run_within(double seconds, const std::vector<BudgetLevel>& levels, Log& log,
