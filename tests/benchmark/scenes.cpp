@@ -132,8 +132,9 @@ Json haff(double restitution, const std::vector<double>& expected, bool small) {
 
 Json measure(const benchmark::Arguments& arguments) {
   Json json;
-  json["crossing_streams"] = crossing_streams(arguments.small);
-  const auto& table = json["crossing_streams"];
+  const Json table =
+      crossing_streams(arguments.small);  // of its own: a reference would not outlive the next key
+  json["crossing_streams"] = table;
   const double seconds_dem = table[0]["seconds"];
   json["dem_seconds_over_swept_seconds"] = seconds_dem / table[2]["seconds"].get<double>();
   double least = HUGE_VAL, most = 0;

@@ -18,8 +18,7 @@ double seconds_of(const std::string& budget) {
   double seconds = 0;
   try {
     seconds = base::quantity(budget, "s");
-  } catch (const InputError&) {
-    seconds = 0;
+  } catch (const InputError&) {  // told below, with what is expected here
   }
   if (!(seconds > 0))
     throw UsageError({.what = "no time to train in --budget",

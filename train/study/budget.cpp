@@ -131,7 +131,7 @@ std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel
     levels.push_back({fmt::format("{}, {} folds", name, own.peers.folds), own,
                       seconds_without_networks(model, own.peers.folds, with_peers), buys});
   };
-  add("kernel alone", fewest_folds, false, "a tenth off the error of POD + RBF on the shipped cases");
+  add("kernel alone", fewest_folds, false, "most often a lower error than that of POD + RBF");
   add("kernel alone", some_folds, false, "intervals and errors from models that miss fewer cases");
   add("kernel and simple peers", some_folds, true,
       "a peer that beats the kernel on some field would be found");
@@ -140,11 +140,11 @@ std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel
   if (!settings.peers.networks) return levels;
   const double multiple =
       settings.effort == "quick" ? model.networks : 1 + standard_networks * (model.networks - 1);
-  levels.push_back({fmt::format("networks too, effort {}", settings.effort), settings,
-                    levels.back().seconds * multiple,
-                    model.networks_had_no_part
-                        ? "they had no part in the present model, which tried them: expect nothing of it"
-                        : "on the shipped cases they cost several times the rest and bought nothing"});
+  levels.push_back(
+      {fmt::format("networks too, effort {}", settings.effort), settings, levels.back().seconds * multiple,
+       model.networks_had_no_part
+           ? "they had no part in the present model, which tried them: expect nothing of it"
+           : "on the shipped cases they cost several times the rest and lower the mean error by less than 1 %"});
   return levels;
 }
 
