@@ -10,7 +10,7 @@
 namespace elrom::ingest {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 std::ptrdiff_t find_field(const CheckedCase& view, std::string_view name) {
   for (std::size_t f = 0; f < view.fields.size(); ++f) {
@@ -31,7 +31,7 @@ double mean(Eigen::Index n, Value value, Weight weight, Wanted wanted) {
     sum += w * v;
     total += w;
   }
-  return total > 0 ? sum / total : unknown;
+  return total > 0 ? sum / total : undefined;
 }
 
 class Measuring {
@@ -64,14 +64,14 @@ class Measuring {
 
   [[nodiscard]] double rms(std::string_view name) const {
     const auto f = find_field(view_, name);
-    if (f < 0) return unknown;
+    if (f < 0) return undefined;
     const auto v = value(f);
     return std::sqrt(mean(
         view_.values.cols(), [&](Eigen::Index i) { return v(i) * v(i); }, cell_weight(), everywhere));
   }
   [[nodiscard]] double mean_between(std::string_view name, double low, double high) const {
     const auto f = find_field(view_, name);
-    if (f < 0) return unknown;
+    if (f < 0) return undefined;
     return mean(view_.values.cols(), value(f), cell_weight(), [&](Eigen::Index i) {
       const double z = boxes_.relative(i, 2);
       return z >= low && z <= high;
@@ -79,7 +79,7 @@ class Measuring {
   }
   [[nodiscard]] double mean_diameter() const {
     const auto d = find_field(view_, "solid_diameter"), e = find_field(view_, "solid_volume_fraction");
-    if (d < 0 || e < 0) return unknown;
+    if (d < 0 || e < 0) return undefined;
     const auto fraction = value(e);
     return mean(
         view_.values.cols(), value(d), [&](Eigen::Index i) { return boxes_.weight(i) * fraction(i); },
@@ -87,7 +87,7 @@ class Measuring {
   }
   [[nodiscard]] double solids_volume() const {
     const auto e = find_field(view_, "solid_volume_fraction");
-    if (e < 0) return unknown;
+    if (e < 0) return undefined;
     double total = 0;
     for (Eigen::Index i = 0; i < view_.values.cols(); ++i) total += boxes_.weight(i);
     return total * mean(view_.values.cols(), value(e), cell_weight(), everywhere);

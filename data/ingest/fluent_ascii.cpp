@@ -198,14 +198,14 @@ std::size_t count_lines(std::string_view text) {
 }
 
 /// Coordinates, volumes and fields as they come, in SI. Rows are cells.
-struct Table {
+struct AsciiTable {
   std::vector<double> centre, volume;
   std::vector<float> values;  //!< (n_cells, n_fields)
 };
 
-Table read_table(Lines& lines, const std::vector<Column>& columns, std::size_t n_fields, bool commas,
-                 std::size_t n_expected, const std::string& path) {
-  Table table;
+AsciiTable read_table(Lines& lines, const std::vector<Column>& columns, std::size_t n_fields, bool commas,
+                      std::size_t n_expected, const std::string& path) {
+  AsciiTable table;
   table.centre.reserve(3 * n_expected);
   table.values.reserve(n_fields * n_expected);
   std::vector<double> row(columns.size());

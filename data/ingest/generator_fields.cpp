@@ -11,7 +11,7 @@ namespace elrom::ingest {
 
 namespace {
 
-constexpr double gravity = 9.81;           // m/s2
+constexpr double standard_gravity = 9.81;  // m/s2
 constexpr double solids_density = 2400.0;  // kg/m3
 constexpr double furnace_height = field::TaperedFurnace{}.height_m;
 constexpr double densest = 0.6;
@@ -141,7 +141,7 @@ void FieldGenerator::fill_profiles(State& state) const {
   double above = 0;
   for (std::size_t k = n; k-- > 0;) {
     state.fraction[k] = std::min(densest, state.fraction[k] * state.inventory / weight);
-    above += (state.fraction[k] * solids_density + state.gas_density) * gravity * dz;
+    above += (state.fraction[k] * solids_density + state.gas_density) * standard_gravity * dz;
     state.pressure[k] = above;
   }
 }

@@ -24,7 +24,7 @@ Json inputs_of(const model::StoredPrediction& stored) {
 Json fields_of(const model::StoredPrediction& stored) {
   Json result = Json::array();
   for (const auto& field : stored.fields) {
-    Range range;
+    ValueRange range;
     for (const float value : field.values) range.add(static_cast<double>(value));
     Json entry{{"name", field.name}, {"unit", field.unit}};
     entry.update(range.json());

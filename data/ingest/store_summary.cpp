@@ -24,21 +24,21 @@ Json extents(const MatrixD& centre) {
 
 Json input_range(const field::InputInfo& input, const std::vector<double>& si) {
   const auto& unit = base::unit(input.display_unit);
-  Range range;
+  ValueRange range;
   for (const double value : si) range.add(unit.from_si(value));
   Json entry{{"name", input.name}, {"unit", input.display_unit}};
   entry.update(range.json());
   return entry;
 }
 
-Json field_range(const field::FieldInfo& field, const Range& range) {
+Json field_range(const field::FieldInfo& field, const ValueRange& range) {
   Json entry{{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}};
   entry.update(range.json());
   return entry;
 }
 
-Range load_range(const field::SnapshotStore& store) {
-  Range range;
+ValueRange load_range(const field::SnapshotStore& store) {
+  ValueRange range;
   for (const auto& one : store.cases()) range.add(one.inputs.load);
   return range;
 }
@@ -110,7 +110,7 @@ Json describe_store(const field::SnapshotStore& store) {
   }
   result["fields"] = Json::array();
   for (const auto& field : store.fields()) {
-    Range range;
+    ValueRange range;
     for (const auto i : cases) {  // one case at a time: stores are larger than memory
       const auto values = store.read(field.name, {&i, 1});
       for (const float value : values.reshaped()) range.add(static_cast<double>(value));
@@ -140,7 +140,7 @@ Json describe_case(const CfdCase& one) {
   }
   result["fields"] = Json::array();
   for (std::size_t f = 0; f < one.fields.size(); ++f) {
-    Range range;
+    ValueRange range;
     for (const float value : one.values.row(static_cast<Eigen::Index>(f)))
       range.add(static_cast<double>(value));
     result["fields"].push_back(field_range(one.fields[f], range));

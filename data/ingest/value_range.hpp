@@ -15,7 +15,7 @@ inline nlohmann::ordered_json number_or_null(double value) {
 }
 
 /// Smallest, largest and mean of values that come in pieces.
-struct Range {
+struct ValueRange {
   double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0;
   std::size_t n = 0;
 

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/io/hdf5.hpp"
 #include "targets.hpp"
 
@@ -74,7 +75,7 @@ model::BundleReader open_bundle(const Arguments& arguments) {
 }  // namespace
 
 Opened open(const Arguments& arguments, int n_threads, Timing& timing) {
-  Stopwatch lap;
+  base::Stopwatch lap;
   auto bundle = open_bundle(arguments);
   auto list = case_list(arguments, bundle.info().schema);
   model::Extent extent(

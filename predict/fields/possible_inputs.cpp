@@ -19,19 +19,19 @@ struct Possible {
   bool above_low;  ///< the low end itself is impossible
 };
 
-constexpr std::array<Possible, 7> table{{{"kg/s", 0, 1e6, false},
-                                         {"kg", 0, 1e9, false},
-                                         {"m", 0, 1e4, true},
-                                         {"m3", 0, 1e9, false},
-                                         {"kg/m3", 0, 1e5, true},
-                                         {"K", 0, 1e4, true},
-                                         {"s", 0, 1e9, false}}};
-constexpr Possible fraction{"1", 0, 1, false};
+constexpr std::array<Possible, 7> known_units{{{"kg/s", 0, 1e6, false},
+                                               {"kg", 0, 1e9, false},
+                                               {"m", 0, 1e4, true},
+                                               {"m3", 0, 1e9, false},
+                                               {"kg/m3", 0, 1e5, true},
+                                               {"K", 0, 1e4, true},
+                                               {"s", 0, 1e9, false}}};
+constexpr Possible a_fraction{"1", 0, 1, false};
 constexpr Possible anything{"", -beyond_everything, beyond_everything, false};
 
 Possible possible_for(const field::InputInfo& info) {
-  if (info.unit == "1" && info.name.ends_with("fraction")) return fraction;
-  for (const auto& row : table)
+  if (info.unit == "1" && info.name.ends_with("fraction")) return a_fraction;
+  for (const auto& row : known_units)
     if (row.unit == info.unit) return row;
   return anything;
 }

@@ -11,6 +11,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/large_array.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/io/csv.hpp"
 #include "hdf_file.hpp"
 #include "key_figures.hpp"
@@ -164,7 +165,7 @@ void CaseRunner::write_text(std::size_t i, Format format, const Coordinates& coo
 }
 
 void CaseRunner::predict(std::size_t i, Desk& desk, int n_threads) {
-  Stopwatch lap;
+  base::Stopwatch lap;
   const auto& inputs = opened_.list.cases[i];
   const auto assessment = opened_.predictor.guard().assess(inputs.values);
   auto& result = results_[i];
@@ -246,7 +247,7 @@ void predict_all(CaseRunner& runner, std::size_t n_cases, int n_threads, Timing&
 }  // namespace
 
 int run(const Arguments& arguments) {
-  Stopwatch whole;
+  base::Stopwatch whole;
   Timing timing;
   const int n_threads = arguments.n_threads > 0 ? arguments.n_threads : base::available_threads();
   const double cached = arguments.timing ? cached_share(arguments.bundle) : 0;

@@ -1,26 +1,10 @@
 #pragma once
 // Where the time of a run went, cold and warm told apart.
 
-#include <chrono>
 #include <filesystem>
 #include <string>
 
 namespace elrom::fields {
-
-class Stopwatch {
- public:
-  /// Seconds since the last call, or since the beginning.
-  double lap() {
-    const auto now = Clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
 
 struct Timing {
   double open = 0;     ///< header of the bundle, cases, mesh

@@ -40,10 +40,10 @@ function(elrom_precompile target)
   target_compile_options(${target} PRIVATE -fpch-preprocess)  # lets ccache see through the precompiled header
 endfunction()
 
-# elrom_unity(target): with ELROM_UNITY a few sources are compiled at once. Tests and commands are short, and what they
-# instantiate (JSON, matchers, Eigen, CLI11) is much the same: half the time from nothing, but more of it after one edit.
+# elrom_unity(target): with ELROM_UNITY a few sources are compiled at once. What they instantiate (Eigen, JSON, fmt, matchers,
+# CLI11) is much the same: half the time from nothing, but more of it after one edit.
 function(elrom_unity target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ELROM_UNITY} UNITY_BUILD_BATCH_SIZE 5)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ELROM_UNITY} UNITY_BUILD_BATCH_SIZE 7)
 endfunction()
 
 # The header of the libraries is of a target that links nothing: what one of them defines beside (fmt's FMT_HEADER_ONLY) must
@@ -79,6 +79,7 @@ function(elrom_library name)
   target_include_directories(elrom-${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(elrom-${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS} ${ELROM_JSON})
   elrom_compile_options(elrom-${name})
+  elrom_unity(elrom-${name})
   # One header parsed for all; LibTorch's has its own.
   if(name STREQUAL torch)
     elrom_precompile(elrom-torch <torch/types.h> ${ELROM_COMMON_HEADERS})

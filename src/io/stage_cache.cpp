@@ -1,6 +1,7 @@
 #include "elrom/io/stage_cache.hpp"
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 
 namespace elrom::io {
 namespace {
@@ -55,13 +56,10 @@ bool StageCache::read(const std::filesystem::path& path, const std::string& dige
 TensorFile StageCache::get(const std::string& stage, const std::string& name, const std::string& digest,
                            const std::function<TensorFile()>& make) const {
   const auto target = path(stage, name, digest, ".elrom");
-  const auto begin = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
+  const base::Stopwatch watch;
   TensorFile file;
   if (read(target, digest, file)) {
-    clock_.add(stage, seconds(), true);
+    clock_.add(stage, watch.seconds(), true);
     return file;
   }
   file = make();
@@ -73,7 +71,7 @@ TensorFile StageCache::get(const std::string& stage, const std::string& name, co
     file.write(target);
     file = TensorFile::open(target);  // mapped: what a study keeps does not stay in memory
   }
-  clock_.add(stage, seconds(), false);
+  clock_.add(stage, watch.seconds(), false);
   return file;
 }
 

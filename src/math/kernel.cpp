@@ -11,15 +11,15 @@
 namespace elrom::math {
 
 namespace {
-constexpr base::EnumNames<Covariance, 4> names{"covariance function",
-                                               {{Covariance::exponential, "exponential"},
-                                                {Covariance::matern32, "matern32"},
-                                                {Covariance::matern52, "matern52"},
-                                                {Covariance::gaussian, "gaussian"}}};
+constexpr base::EnumNames<Covariance, 4> covariance_names{"covariance function",
+                                                          {{Covariance::exponential, "exponential"},
+                                                           {Covariance::matern32, "matern32"},
+                                                           {Covariance::matern52, "matern52"},
+                                                           {Covariance::gaussian, "gaussian"}}};
 }
 
-std::string_view name_of(Covariance covariance) { return names.name(covariance); }
-Covariance covariance_of(std::string_view name) { return names.value(name); }
+std::string_view name_of(Covariance covariance) { return covariance_names.name(covariance); }
+Covariance covariance_of(std::string_view name) { return covariance_names.value(name); }
 
 double covariance(Covariance kind, double r) {
   switch (kind) {

@@ -16,10 +16,11 @@ namespace elrom::math {
 
 namespace {
 
-constexpr base::EnumNames<RadialFunction, 3> names{"radial function",
-                                                   {{RadialFunction::linear, "linear"},
-                                                    {RadialFunction::thin_plate_spline, "thin_plate_spline"},
-                                                    {RadialFunction::cubic, "cubic"}}};
+constexpr base::EnumNames<RadialFunction, 3> radial_functions{
+    "radial function",
+    {{RadialFunction::linear, "linear"},
+     {RadialFunction::thin_plate_spline, "thin_plate_spline"},
+     {RadialFunction::cubic, "cubic"}}};
 
 int tail_degree(const RbfOptions& options, const MatrixD& x) {
   const int least = options.function == RadialFunction::linear ? 0 : 1;
@@ -64,8 +65,8 @@ Eigen::MatrixXd solve(const Eigen::MatrixXd& system, const Eigen::MatrixXd& righ
 
 }  // namespace
 
-std::string_view name_of(RadialFunction function) { return names.name(function); }
-RadialFunction radial_function_of(std::string_view name) { return names.value(name); }
+std::string_view name_of(RadialFunction function) { return radial_functions.name(function); }
+RadialFunction radial_function_of(std::string_view name) { return radial_functions.value(name); }
 
 double radial(RadialFunction function, double r) {
   switch (function) {

@@ -10,8 +10,6 @@
 namespace elrom::model {
 namespace {
 
-/// Planes of one pass: 66 planes of the furnace are one pass, and a pass's activations stay in cache.
-constexpr std::size_t block_rows = 5 * lane;
 /// Values of the table of encoded planes: a thousand planes one-hot. No furnace has more; a hostile file may
 /// say so.
 constexpr std::size_t most_encodings = 1'000'000;

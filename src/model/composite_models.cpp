@@ -125,7 +125,7 @@ std::unique_ptr<FieldModel> BlendModel::load(const io::TensorFile& file, const s
 namespace {
 
 /// Where each column of a plane comes from; the same for all planes: one row.
-io::Tensor column_map(const field::Mirror& mirror, std::size_t n_planes, std::size_t n_columns) {
+io::Tensor column_tensor(const field::Mirror& mirror, std::size_t n_planes, std::size_t n_columns) {
   std::vector<std::int32_t> columns(n_planes * n_columns);
   check(mirror.cell_from.size() == columns.size(), "mirror: number of cells");
   bool same = true;
@@ -167,7 +167,8 @@ MirrorModel::MirrorModel(std::shared_ptr<const FieldModel> model, const std::vec
     images_.push_back(
         {io::Tensor::copy(std::span<const std::int32_t>(mirror.input_from), {mirror.input_from.size()}),
          doubles_of(mirror.input_sign), doubles_of(mirror.input_offset),
-         column_map(mirror, n_planes, model_->n_columns()), static_cast<float>(mirror.field_sign(parity))});
+         column_tensor(mirror, n_planes, model_->n_columns()),
+         static_cast<float>(mirror.field_sign(parity))});
   }
 }
 

@@ -15,6 +15,8 @@ namespace elrom::model {
 
 /// Rows are padded to a multiple of this, and memory is aligned to it.
 inline constexpr std::size_t lane = 16;
+/// Rows of one pass, so that its activations stay in the second-level cache: 66 planes of the furnace are one pass.
+inline constexpr std::size_t block_rows = 5 * lane;
 [[nodiscard]] constexpr std::size_t padded(std::size_t n_rows) { return (n_rows + lane - 1) / lane * lane; }
 
 /// Rows of a layer's weights, float32 or float16, with a leading dimension: a view of some of their columns.

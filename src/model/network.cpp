@@ -13,10 +13,7 @@
 namespace elrom::model {
 namespace {
 
-/// Rows of one pass: the activations of a pass stay in the second-level cache.
-constexpr std::size_t block_rows = 5 * lane;
-
-constexpr base::EnumNames<Activation, 3> names{
+constexpr base::EnumNames<Activation, 3> activations{
     "activation", {{Activation::relu, "relu"}, {Activation::tanh, "tanh"}, {Activation::silu, "silu"}}};
 
 void require(bool fits, std::size_t i_layer, const std::string& found, const std::string& expected) {
@@ -39,8 +36,8 @@ void check_layer(const Layer& layer, std::size_t i_layer) {
 
 }  // namespace
 
-std::string_view name_of(Activation activation) { return names.name(activation); }
-Activation activation_of(std::string_view name) { return names.value(name); }
+std::string_view name_of(Activation activation) { return activations.name(activation); }
+Activation activation_of(std::string_view name) { return activations.value(name); }
 
 Network::Network(std::vector<Layer> layers, Activation activation)
     : layers_(std::move(layers)), activation_(activation) {

@@ -71,12 +71,12 @@ struct Factor {
 };
 
 /// How the deviation from the line grows along it.
-struct Growth {
+struct ScatterGrowth {
   Row middle, deviation;
   double growth = 0;
 
   /// @param skip a case to leave out, or -1
-  Growth(const MatrixD& expected, const MatrixD& left, Eigen::Index skip) {
+  ScatterGrowth(const MatrixD& expected, const MatrixD& left, Eigen::Index skip) {
     const auto sum_without = [&](const auto& values) {
       Row sum = values.colwise().sum();
       if (skip >= 0) sum -= values.row(skip).matrix();
@@ -117,7 +117,7 @@ struct OperatingLine::Learned {
   std::vector<Eigen::Index> varying;  //!< inputs that change; all below is of these
   Row mean, scale;                    //!< to standardise
   Factor factor;
-  Growth growth;
+  ScatterGrowth growth;
   MatrixD expected, left;  //!< of the learned cases by the others, standardised
 
   [[nodiscard]] std::vector<UsualInput> spread_out(const Row& value, const Row& deviation) const {
@@ -165,10 +165,10 @@ OperatingLine::OperatingLine(const MatrixD& inputs) {
   }
   const MatrixD left = z - expected;
   learned_ = std::make_shared<const Learned>(Learned{inputs.cols(), varying, own_mean, own_scale, factor,
-                                                     Growth(expected, left, -1), expected, left});
+                                                     ScatterGrowth(expected, left, -1), expected, left});
   std::vector<double> farthest;
   for (Eigen::Index i = 0; i < left.rows(); ++i) {
-    const Row deviation = Growth(expected, left, i).at(expected.row(i));
+    const Row deviation = ScatterGrowth(expected, left, i).at(expected.row(i));
     farthest.push_back(left.row(i).cwiseQuotient(deviation).cwiseAbs().maxCoeff());
   }
   limit_ = limit_of(std::move(farthest));
@@ -193,7 +193,7 @@ std::vector<UsualInput> OperatingLine::left_out(std::size_t i_case) const {
   check(knows(), "operating line: learned from enough cases");
   const auto i = static_cast<Eigen::Index>(i_case);
   const Row expected = learned_->expected.row(i);
-  return learned_->spread_out(expected, Growth(learned_->expected, learned_->left, i).at(expected));
+  return learned_->spread_out(expected, ScatterGrowth(learned_->expected, learned_->left, i).at(expected));
 }
 
 std::string unusual_text(const field::InputInfo& info, double given, const UsualInput& usual) {

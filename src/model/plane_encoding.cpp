@@ -11,10 +11,10 @@
 namespace elrom::model {
 namespace {
 
-constexpr base::EnumNames<PlaneEncodingKind, 3> names{"plane encoding",
-                                                      {{PlaneEncodingKind::index, "index"},
-                                                       {PlaneEncodingKind::fourier, "fourier"},
-                                                       {PlaneEncodingKind::one_hot, "one_hot"}}};
+constexpr base::EnumNames<PlaneEncodingKind, 3> encodings{"plane encoding",
+                                                          {{PlaneEncodingKind::index, "index"},
+                                                           {PlaneEncodingKind::fourier, "fourier"},
+                                                           {PlaneEncodingKind::one_hot, "one_hot"}}};
 
 /// (plane - mean) / standard deviation over 0 ... n_planes - 1; 0 for a single plane.
 double standardised_index(std::size_t plane, std::size_t n_planes) {
@@ -25,8 +25,8 @@ double standardised_index(std::size_t plane, std::size_t n_planes) {
 
 }  // namespace
 
-std::string_view name_of(PlaneEncodingKind kind) { return names.name(kind); }
-PlaneEncodingKind plane_encoding_of(std::string_view name) { return names.value(name); }
+std::string_view name_of(PlaneEncodingKind kind) { return encodings.name(kind); }
+PlaneEncodingKind plane_encoding_of(std::string_view name) { return encodings.value(name); }
 
 std::size_t PlaneEncoding::size() const {
   switch (kind) {

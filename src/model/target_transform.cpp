@@ -9,14 +9,14 @@
 namespace elrom::model {
 namespace {
 
-constexpr base::EnumNames<TransformKind, 3> names{
+constexpr base::EnumNames<TransformKind, 3> transforms{
     "target transform",
     {{TransformKind::none, "none"}, {TransformKind::log, "log"}, {TransformKind::asinh, "asinh"}}};
 
 }  // namespace
 
-std::string_view name_of(TransformKind kind) { return names.name(kind); }
-TransformKind transform_of(std::string_view name) { return names.value(name); }
+std::string_view name_of(TransformKind kind) { return transforms.name(kind); }
+TransformKind transform_of(std::string_view name) { return transforms.value(name); }
 
 TargetTransform TargetTransform::fit(TransformKind kind, std::span<const float> values) {
   if (kind == TransformKind::none) return {};

@@ -79,20 +79,20 @@ std::vector<double> pooled_scores(const MatrixF& residuals, const Eigen::VectorX
 }
 
 /// Logarithm of the sizes as a linear function of the inputs.
-struct Growth {
+struct SizeGrowth {
   std::vector<double> slopes;
   double offset = 0;
   Sizes sizes;
 };
 
 /// The penalty is the one of the least leave-one-out error; the largest leaves nearly a constant.
-Growth fit_growth(const Eigen::VectorXd& sizes, const MatrixD& inputs) {
+SizeGrowth fit_sizes(const Eigen::VectorXd& sizes, const MatrixD& inputs) {
   const Eigen::VectorXd logarithms = sizes.array().log();
   const math::Standardiser scaler(inputs);
   const std::vector<double> penalties{1, 3, 10, 30, 100, 300, 1e3, 1e4, 1e6};
   const MatrixD x = scaler.apply(inputs);
   const math::Ridge ridge = math::fit_ridge(x, logarithms, penalties);
-  Growth growth;
+  SizeGrowth growth;
   growth.sizes.fitted = ridge.predict(x).col(0).array().exp();
   growth.sizes.left_out = (logarithms - ridge.loo_residuals.col(0)).array().exp();
   growth.offset = ridge.intercept[0];
@@ -114,7 +114,7 @@ Uncertainty::Uncertainty(const MatrixF& residuals, std::size_t n_columns, const 
   Sizes sizes{Eigen::VectorXd::Ones(residuals.rows()), Eigen::VectorXd::Ones(residuals.rows())};
   Eigen::VectorXd scale = root_mean_squares(residuals, sizes.fitted);
   if (inputs.size() > 0) {
-    Growth growth = fit_growth(sizes_of(residuals, scale), inputs);
+    SizeGrowth growth = fit_sizes(sizes_of(residuals, scale), inputs);
     growth_ = std::move(growth.slopes);
     offset_ = growth.offset;
     sizes = std::move(growth.sizes);

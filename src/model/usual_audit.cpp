@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t fewest_cases = 3;
 constexpr double usual_deviations = 3;
 // Cases of a solver that conserves to the last digit leave no scatter to compare with.
-constexpr double least_deviation = 1e-3;
+constexpr double least_scatter = 1e-3;
 
 std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b) {
   if (!a || !b || *b == 0 || !std::isfinite(*a / *b)) return std::nullopt;
@@ -57,7 +57,7 @@ std::vector<std::string> unusual_figures(const Audit& audit, std::span<const Usu
   for (const auto& figure : figures_of(audit)) {
     const auto same = std::ranges::find(usual, figure.name, &UsualFigure::name);
     if (same == usual.end() || !figure.value) continue;
-    const double deviation = std::max(same->deviation, least_deviation);
+    const double deviation = std::max(same->deviation, least_scatter);
     if (std::abs(*figure.value - same->mean) <= usual_deviations * deviation) continue;
     found.push_back(fmt::format("{} is {}: {:.2f} +- {} in {} training cases", figure.name,
                                 base::rounded(*figure.value, 3), same->mean, base::rounded(deviation, 2),

@@ -1,10 +1,10 @@
 #include "elrom/particle/collision_job.hpp"
 
-#include <chrono>
 #include <cmath>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/io/stage_cache.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Small enough to lose little and to show progress, large enough to feed every thread of the solver.
-constexpr std::size_t block_size = 8192;
+constexpr std::size_t pairs_a_block = 8192;
 
 struct BlockContext {
   int n_threads;
@@ -40,11 +40,11 @@ struct CollisionBlock {
   int steps_per_contact, most_steps;
 
   [[nodiscard]] io::TensorFile compute(const BlockContext& context) const {
-    const auto begin = std::chrono::steady_clock::now();
+    const base::Stopwatch watch;
     const PairSolverOptions options{steps_per_contact, most_steps, context.n_threads};
     const auto parting =
         make_collisions(protocol, law, seed, first, count, options, speed_cap, context.stop).parting;
-    *context.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    *context.seconds += watch.seconds();
     io::TensorFile file;
     file.set("after/velocity_1", tensor(parting.after.velocity_1));
     file.set("after/velocity_2", tensor(parting.after.velocity_2));
@@ -134,8 +134,8 @@ CollisionRun make_collision_file(const fs::path& path, const CollisionJob& job,
          .provenance = provenance};
   set.parting = {.after = Motion(job.n_pairs), .overlap = set.pairs.overlap, .duration = set.pairs.overlap};
   const io::StageCache blocks(blocks_of(path), log);
-  for (std::size_t first = 0; first < job.n_pairs; first += block_size) {
-    const auto count = std::min(block_size, job.n_pairs - first);
+  for (std::size_t first = 0; first < job.n_pairs; first += pairs_a_block) {
+    const auto count = std::min(pairs_a_block, job.n_pairs - first);
     const CollisionBlock block{
         job.protocol,          job.law, job.seed, job.speed_cap, first, count, job.options.steps_per_contact,
         job.options.most_steps};

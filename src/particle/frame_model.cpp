@@ -9,7 +9,7 @@
 namespace elrom::particle {
 namespace {
 
-constexpr std::size_t block_size = 256;  // pairs, a multiple of every lane width
+constexpr std::size_t pairs_at_once = 256;  // pairs, a multiple of every lane width
 
 // Dimensionless speed a speed: sqrt(m12 / (K R^(p-1))) / R.
 class SpeedScale {
@@ -136,12 +136,12 @@ void FrameModel::impulses(const Pairs& pairs, Impulses& impulses) const {
   impulses.resize(pairs.size());
   const bool with_spins = regressor_->n_inputs() == sizes_of(true).inputs;
   const SpeedScale scale(law_);
-  Table inputs = table(block_size, regressor_->n_inputs()),
-        outputs = table(block_size, regressor_->n_outputs());
-  std::array<Impact, block_size / lane_width> impacts;
-  std::array<Features, block_size / lane_width> features;
-  for (std::size_t begin = 0; begin < pairs.size(); begin += block_size) {
-    const auto count = (std::min(block_size, pairs.size() - begin) + lane_width - 1) / lane_width;
+  Table inputs = table(pairs_at_once, regressor_->n_inputs()),
+        outputs = table(pairs_at_once, regressor_->n_outputs());
+  std::array<Impact, pairs_at_once / lane_width> impacts;
+  std::array<Features, pairs_at_once / lane_width> features;
+  for (std::size_t begin = 0; begin < pairs.size(); begin += pairs_at_once) {
+    const auto count = (std::min(pairs_at_once, pairs.size() - begin) + lane_width - 1) / lane_width;
     for (std::size_t k = 0; k < count; ++k) {
       impacts[k] = impact_of(pairs, begin + k * lane_width);
       features[k] = features_of(impacts[k], scale, with_spins);

@@ -8,7 +8,7 @@
 namespace elrom::particle {
 namespace {
 
-constexpr std::size_t block_size = 512;  // pairs a thread takes at a time
+constexpr std::size_t pairs_a_thread = 512;  // pairs a thread takes at a time
 
 // Of the relative motion: see the header. `place` counts from where the
 // contact begins, so that an overlap of 1e-16 m keeps its digits.
@@ -334,14 +334,14 @@ Parting collide(const Pairs& pairs, const ContactLaw& law, const PairSolverOptio
   Parting parting;
   parting.after = Motion(n);
   parting.overlap = parting.duration = Scalars::Zero(static_cast<Eigen::Index>(n));
-  const std::size_t n_blocks = (n + block_size - 1) / block_size;
+  const std::size_t n_blocks = (n + pairs_a_thread - 1) / pairs_a_thread;
   std::vector<BlockResult> results(n_blocks);
   const auto run = block_runner(law);
   base::parallel_for(
       n_blocks, options.n_threads,
       [&](std::size_t block, int) {
-        const auto first = block * block_size;
-        results[block] = run(pairs, law, options, first, std::min(n, first + block_size), parting);
+        const auto first = block * pairs_a_thread;
+        results[block] = run(pairs, law, options, first, std::min(n, first + pairs_a_thread), parting);
       },
       stop);
   for (const auto& result : results) {

@@ -11,9 +11,9 @@
 namespace elrom::particle {
 namespace {
 
-constexpr std::size_t block_size = 256;  // samples; one tree and a block stay in the nearest cache
-constexpr std::size_t n_lanes = 8;       // samples that go down a tree side by side, to hide the loads
-static_assert(block_size % n_lanes == 0);
+constexpr std::size_t samples_at_once = 256;  // samples; one tree and a block stay in the nearest cache
+constexpr std::size_t n_lanes = 8;            // samples that go down a tree side by side, to hide the loads
+static_assert(samples_at_once % n_lanes == 0);
 
 [[noreturn]] void refuse(const std::string& where, std::size_t node, std::string what) {
   throw InputError({.what = "node " + std::to_string(node) + " " + std::move(what), .where = where});
@@ -103,7 +103,7 @@ Trees::Trees(std::size_t n_inputs, std::vector<TreeNode> nodes, std::vector<Tree
     if (is_leaf)
       steps_.push_back({0, self, std::numeric_limits<float>::quiet_NaN(), node.value});
     else
-      steps_.push_back({node.feature * static_cast<std::int32_t>(block_size), node.left, node.value, 0});
+      steps_.push_back({node.feature * static_cast<std::int32_t>(samples_at_once), node.left, node.value, 0});
     if (!is_leaf)
       for (const int child : {0, 1}) root_of[static_cast<std::size_t>(node.left + child)] = root_of[i];
   }
@@ -144,13 +144,13 @@ void Trees::evaluate(const Eigen::Ref<const Table>& inputs, Eigen::Ref<Table> ou
   check(outputs.rows() == inputs.rows() && static_cast<std::size_t>(outputs.cols()) == outputs_.size(),
         "trees: shape of the outputs");
   const auto n = static_cast<std::size_t>(inputs.rows());
-  std::vector<float> block(n_inputs_ * block_size);
-  std::array<double, block_size> sums;
-  for (std::size_t first = 0; first < n; first += block_size) {
-    const auto count = std::min(block_size, n - first);
+  std::vector<float> block(n_inputs_ * samples_at_once);
+  std::array<double, samples_at_once> sums;
+  for (std::size_t first = 0; first < n; first += samples_at_once) {
+    const auto count = std::min(samples_at_once, n - first);
     const auto row = static_cast<Eigen::Index>(first), rows = static_cast<Eigen::Index>(count);
     for (std::size_t k = 0; k < n_inputs_; ++k)
-      Eigen::Map<Eigen::ArrayXf>(block.data() + k * block_size, rows) =
+      Eigen::Map<Eigen::ArrayXf>(block.data() + k * samples_at_once, rows) =
           inputs.col(static_cast<Eigen::Index>(k)).segment(row, rows).cast<float>();
     const auto in_lanes = (count + n_lanes - 1) / n_lanes * n_lanes;
     for (std::size_t k = 0; k < outputs_.size(); ++k) {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "proposals.hpp"
 
@@ -122,7 +122,7 @@ class Searcher {
         return *stored;
       }
     }
-    const auto begin = std::chrono::steady_clock::now();
+    const base::Stopwatch watch;
     RungMonitor monitor(halving_, values_.size(), search_.prune && i_seed == 0);
     const auto seed = search_.seed.derive("trial").derive(key).derive(static_cast<std::uint64_t>(i_seed));
     const auto trained = search_.evaluate(hyperparameters, seed, &monitor);
@@ -132,7 +132,7 @@ class Searcher {
               .epochs = trained.epochs,
               .pruned = trained.pruned,
               .diverged = trained.diverged,
-              .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+              .seconds = watch.seconds(),
               .rungs = monitor.reached()};
     if (trained.diverged)
       trial.value = diverged_value(hyperparameters);

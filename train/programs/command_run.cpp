@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <limits>
 
 #include "commands.hpp"
 #include "elrom/base/app.hpp"
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
 #include "elrom/study/budget.hpp"
@@ -40,22 +40,22 @@ void print_outcomes(const std::vector<study::FieldOutcome>& outcomes) {
 
 int train(const StudyArguments& arguments, bool with_peers, const study::Settings& settings,
           const study::Toolbox& tools, Log& log, const std::stop_token& stop = base::interrupt_token()) {
-  const auto begin = std::chrono::steady_clock::now();
+  const base::Stopwatch watch;
   study::Study study(arguments.folder, settings, tools, log, stop);
   print_outcomes(with_peers ? study.run() : study.fit());
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = watch.seconds();
   fmt::print("{} in {}\n", (arguments.folder / "model.elrom").string(), base::duration(seconds));
   return tell(study.promotion(), arguments.folder);
 }
 
 int train_within(double seconds, const StudyArguments& arguments, bool with_peers,
                  const study::Settings& settings, const study::Toolbox& tools, Log& log) {
-  const auto begin = std::chrono::steady_clock::now();
+  const base::Stopwatch watch;
   const auto model = study::cost_model(arguments.folder, settings, log);
   const auto levels = study::budget_levels(settings, model);
   const auto resolved = arguments.folder / "resolved.toml";
   int status = std::numeric_limits<int>::max();
-  const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double taken = watch.seconds();
   const auto spent = study::run_within(
       seconds - taken, levels, log, base::interrupt_token(),
       [&](const study::Settings& own, const std::stop_token& stop) {
@@ -68,8 +68,7 @@ int train_within(double seconds, const StudyArguments& arguments, bool with_peer
         }
       });
   for (const auto& sentence : study::left_out(levels, spent)) fmt::print("{}\n", sentence);
-  fmt::print("{} of {}; the settings used are in {}\n",
-             base::duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()),
+  fmt::print("{} of {}; the settings used are in {}\n", base::duration(watch.seconds()),
              base::duration(seconds), resolved.string());
   return status;
 }

@@ -10,14 +10,10 @@
 #include "elrom/io/file_kind.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/report/accuracy.hpp"
+#include "json_number.hpp"
 
 namespace elrom::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
 
 Json interval_node(const std::optional<math::LikelyRange>& interval) {
   return interval ? Json{number(interval->low), number(interval->high)} : Json();

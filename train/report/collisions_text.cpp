@@ -9,15 +9,11 @@
 #include "collisions_words.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/io/file_kind.hpp"
+#include "json_number.hpp"
 #include "names.hpp"
 
 namespace elrom::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
 
 Json numbers(const std::vector<double>& values) {
   Json list = Json::array();

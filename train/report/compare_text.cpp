@@ -9,15 +9,13 @@
 #include "elrom/base/text.hpp"
 #include "elrom/io/file_kind.hpp"
 #include "elrom/report/compare.hpp"
+#include "json_number.hpp"
 #include "names.hpp"
 
 namespace elrom::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Verdict = Gain::Verdict;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 std::vector<std::string> fields_with(const Comparison& comparison, Verdict verdict) {
   std::vector<std::string> names;

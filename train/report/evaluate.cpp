@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/model/bundle.hpp"
@@ -19,8 +19,6 @@
 
 namespace elrom::report {
 namespace {
-
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::size_t> rows_of(const field::SnapshotStore& store, const std::vector<std::string>& names) {
   std::vector<std::size_t> rows;
@@ -70,10 +68,6 @@ void check_bundle(const model::BundleReader& bundle, const field::SnapshotStore&
         {.what = "bundle and store have different boundary conditions", .where = bundle.file().where()});
 }
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 // By name, or by the boundary conditions of a training case under another name.
 std::vector<std::string> leaked_cases(const model::BundleReader& bundle, const field::SnapshotStore& store,
                                       const HeldOutCases& cases, const std::vector<std::string>& trained) {
@@ -107,9 +101,9 @@ void mark_other_cases(AccuracyReport& report) {
 MethodSummary summarise(const BundleFile& file, const field::SnapshotStore& store, const HeldOutCases& cases,
                         int n_threads) {
   MethodSummary summary{.file = file};
-  const auto opened = std::chrono::steady_clock::now();
+  const base::Stopwatch opening;
   const model::Predictor predictor(file.path);
-  summary.open_ms = milliseconds_since(opened);
+  summary.open_ms = 1e3 * opening.seconds();
   check_bundle(predictor.bundle(), store);
   summary.digest = predictor.bundle().digest();
   summary.training_cases = predictor.bundle().info().cases;
@@ -118,9 +112,9 @@ MethodSummary summarise(const BundleFile& file, const field::SnapshotStore& stor
   model::Predictor::Scratch scratch;
   std::vector<double> times;
   for (int repeat = 0; repeat < 6; ++repeat) {
-    const auto start = std::chrono::steady_clock::now();
+    const base::Stopwatch watch;
     predictor.predict(case_inputs(cases, 0), values, {}, scratch, n_threads);
-    if (repeat > 0) times.push_back(milliseconds_since(start));
+    if (repeat > 0) times.push_back(1e3 * watch.seconds());
   }
   std::nth_element(times.begin(), times.begin() + 2, times.end());
   summary.predict_ms = times[2];

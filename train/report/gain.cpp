@@ -14,8 +14,6 @@
 namespace elrom::report {
 namespace {
 
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-
 double pooled_nrmse(const MethodField& method, std::span<const std::size_t> cases) {
   double error = 0, departure = 0;
   for (const auto i : cases) {

@@ -9,11 +9,6 @@
 #include "elrom/math/statistics.hpp"
 
 namespace elrom::report {
-namespace {
-
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 WorstCell worst_cell(std::span<const float> truth, std::span<const float> prediction) {
   check(truth.size() == prediction.size() && !truth.empty(), "worst_cell: sizes differ");

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/math/statistics.hpp"
@@ -22,8 +23,7 @@
 namespace elrom::study {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr int fewest_folds = 2, some_folds = 4;
 constexpr double peers_beside =
@@ -34,8 +34,6 @@ constexpr double hope = 2;    // of the cheapest that is left: what it makes is 
 constexpr double sure = 0.5;  // of a level that nothing stands in for when it is not done
 
 constexpr double for_a_simple_peer = 0.07;  // share of the time kept back while there is no model at all
-
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 /// Asks to stop when the time is up, or when somebody else asks.
 class Deadline {
@@ -66,9 +64,9 @@ double calibrate(const field::SnapshotStore& store, const Settings& settings, co
   const auto info = std::ranges::find(fields, field, &field::FieldInfo::name);
   const field::FieldData data{&cases, *info, store.read(field, rows)};
   const auto kernel = methods::make_kernel_method();
-  const auto begin = Clock::now();
+  const base::Stopwatch watch;
   (void)kernel->fit(data, math::all_rows(cases.n_cases()), {});
-  return since(begin);
+  return watch.seconds();
 }
 
 void read_earlier_run(CostModel& model, const std::filesystem::path& folder) {
@@ -182,14 +180,14 @@ BudgetRun run_within(double seconds, const std::vector<BudgetLevel>& levels, Log
                      const std::stop_token& stop,
                      const std::function<void(const Settings&, std::stop_token)>& train) {
   check(!levels.empty(), "run_within: a level");
-  const auto begin = Clock::now();
+  const base::Stopwatch watch;
   BudgetRun run;
-  while (const auto next = next_level(levels, seconds - since(begin), run)) {
+  while (const auto next = next_level(levels, seconds - watch.seconds(), run)) {
     const auto& level = levels[*next];
     log.info(fmt::format("planned: {} (about {})", level.name, base::duration(level.seconds * run.pace)));
     const double kept_back = run.done ? 0 : for_a_simple_peer;
-    const auto from = Clock::now();
-    const Deadline deadline((1 - kept_back) * seconds - since(begin), stop);
+    const base::Stopwatch level_watch;
+    const Deadline deadline((1 - kept_back) * seconds - watch.seconds(), stop);
     try {
       train(level.settings, deadline.token());
     } catch (const Interrupted&) {
@@ -203,7 +201,7 @@ BudgetRun run_within(double seconds, const std::vector<BudgetLevel>& levels, Log
     }
     run.done = next;
     run.settings = level.settings;
-    if (level.seconds > 0) run.pace = since(from) / level.seconds;
+    if (level.seconds > 0) run.pace = level_watch.seconds() / level.seconds;
   }
   return run;
 }

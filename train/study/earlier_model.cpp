@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t least_known = 4;  // two folds with something to train and to stop by
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 const Json* entry_of(const Json& candidates, const std::string& name) {
   const auto found =

@@ -1,10 +1,10 @@
 #include "elrom/study/retrain.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/io/file_kind.hpp"
 #include "elrom/model/bundle.hpp"
 #include "elrom/study/held_out.hpp"
@@ -14,10 +14,7 @@
 namespace elrom::study {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
-
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 /// A timing file that cannot be used must not stop a retraining.
 std::optional<double> recorded_seconds(const std::filesystem::path& folder) {
@@ -35,9 +32,9 @@ double seconds_from_nothing(const std::filesystem::path& study, Settings setting
   const auto folder = study / ".from_nothing";
   std::filesystem::remove_all(folder);
   settings.store = std::filesystem::absolute(study / settings.store).string();
-  const auto begin = Clock::now();
+  const base::Stopwatch watch;
   Study(folder, settings, toolbox, log, stop).fit();
-  const double seconds = since(begin);
+  const double seconds = watch.seconds();
   std::filesystem::remove_all(folder);
   return seconds;
 }
@@ -91,7 +88,7 @@ RetrainReport retrain(const std::filesystem::path& folder, const Settings& setti
   RetrainReport report{.cases_before = earlier.cases.size(),
                        .seconds_from_nothing = recorded_seconds(folder)};
   const auto held_out_before = held_out_so_far(folder);
-  const auto begin = Clock::now();
+  const base::Stopwatch watch;
   {
     Study study(folder, settings, toolbox, log, stop);
     tell_changed_split(study, earlier.cases, held_out_before, log);
@@ -109,7 +106,7 @@ RetrainReport retrain(const std::filesystem::path& folder, const Settings& setti
       report.promotion = study.promotion();
       report.nothing_new = report.promotion.kind == Promotion::Kind::unchanged;
     }
-    report.seconds = since(begin);
+    report.seconds = watch.seconds();
     if (const auto added = new_cases(study, earlier.cases);
         !added.empty() && report.promotion.verdict && !report.nothing_new)
       report.effects = effects_of(added, present, study.gate_cases(), settings.n_threads());

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +9,7 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/math/statistics.hpp"
@@ -78,8 +78,6 @@ std::string settings_text(Settings settings) {
 }  // namespace
 
 struct Study::Impl {
-  using Clock = std::chrono::steady_clock;
-
   Impl(std::filesystem::path folder_, Settings settings_, Toolbox toolbox, Log& log_, std::stop_token stop_)
       : folder(made(std::move(folder_))),
         settings(std::move(settings_)),
@@ -204,7 +202,7 @@ struct Study::Impl {
   }
 
   std::vector<FieldOutcome> fit(bool with_peers, const std::filesystem::path& model_path) {
-    const auto begin = Clock::now();
+    const base::Stopwatch watch;
     const auto names = with_peers ? methods.bundles() : std::vector{settings.method};
     std::map<std::string, std::map<std::string, FieldStage>> stages;  // by method, field
     std::vector<FieldOutcome> outcomes;
@@ -233,8 +231,8 @@ struct Study::Impl {
         if (name == settings.method) add_costs(costs.candidates, stage.costs());
       }
     }
-    write_timing(folder / "timing.json", cache.clock().entries(),
-                 std::chrono::duration<double>(Clock::now() - begin).count(), settings.n_threads(), costs);
+    write_timing(folder / "timing.json", cache.clock().entries(), watch.seconds(), settings.n_threads(),
+                 costs);
     return outcomes;
   }
 
@@ -284,14 +282,14 @@ struct Study::Impl {
   }
 
   void write_peer(const std::string& name, const FieldStages& stages) {
-    const auto begin = Clock::now();
+    const base::Stopwatch watch;
     write_study_bundle(made(folder / "peers") / (name + ".elrom"), bundle_of(name), lineage(), stages);
-    cache.clock().add("bundle", std::chrono::duration<double>(Clock::now() - begin).count(), false);
+    cache.clock().add("bundle", watch.seconds(), false);
   }
 
   /// A version of this content that a run before this one left, or a new one.
   int version_of(const Versions& versions, const FieldStages& stages) {
-    const auto begin = Clock::now();
+    const base::Stopwatch watch;
     const auto bundle = bundle_of(settings.method);
     const auto content = content_of(bundle, stages);
     for (const int number : versions.numbers())
@@ -301,7 +299,7 @@ struct Study::Impl {
     if (const auto current = versions.current()) from.parent = digest_if_whole(versions.file(*current));
     made(folder / "models");
     write_study_bundle(versions.file(number), bundle, from, stages);
-    cache.clock().add("bundle", std::chrono::duration<double>(Clock::now() - begin).count(), false);
+    cache.clock().add("bundle", watch.seconds(), false);
     return number;
   }
 

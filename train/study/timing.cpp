@@ -2,7 +2,6 @@
 
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -84,17 +83,10 @@ double processor_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-namespace {
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-}  // namespace
-
-CostClock::CostClock(MethodCost& cost)
-    : cost_(cost), wall_(wall_seconds()), processor_(processor_seconds()) {}
+CostClock::CostClock(MethodCost& cost) : cost_(cost), processor_(processor_seconds()) {}
 
 CostClock::~CostClock() {
-  cost_.seconds += wall_seconds() - wall_;
+  cost_.seconds += watch_.seconds();
   cost_.processor_seconds += processor_seconds() - processor_;
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/io/stage_cache.hpp"
 #include "elrom/study/timing.hpp"
 
@@ -25,7 +26,8 @@ class CostClock {
 
  private:
   MethodCost& cost_;
-  double wall_, processor_;
+  base::Stopwatch watch_;
+  double processor_;
 };
 
 /// What was fitted, however long ago, and what each part cost then.

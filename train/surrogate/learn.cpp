@@ -1,8 +1,7 @@
 #include "elrom/surrogate/learn.hpp"
 
-#include <chrono>
-
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/particle/exact_model.hpp"
 #include "elrom/particle/network_regressor.hpp"
@@ -100,7 +99,7 @@ std::shared_ptr<const particle::CollisionModel> learn_frame(const particle::Coll
 
 LearnedCollisions learn_collisions(const particle::CollisionSet& set, const particle::CollisionSet* low,
                                    const LearnSettings& settings, const LearnTools& tools) {
-  const auto begin = std::chrono::steady_clock::now();
+  const base::Stopwatch watch;
   const auto n_test = particle::n_test_pairs(set.size(), settings.test);
   const auto n_train = set.size() - n_test;
   LearnedCollisions learned;
@@ -119,7 +118,7 @@ LearnedCollisions learn_collisions(const particle::CollisionSet& set, const part
       learned.bundle.model = std::make_shared<particle::ExactModel>(set.law);
       break;
   }
-  learned.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  learned.seconds = watch.seconds();
   learned.errors = particle::errors_of(*learned.bundle.model, set, n_train, n_test);
   learned.bundle.protocol = set.protocol;
   learned.bundle.law = set.law;

@@ -18,7 +18,7 @@ struct LearnedPart {
   DocumentRange range;
 };
 
-Table scaled(const Table& rows, const math::Standardiser& scaler) {
+Table scaled_table(const Table& rows, const math::Standardiser& scaler) {
   return (rows.rowwise() - scaler.mean().transpose().array()).rowwise() / scaler.scale().transpose().array();
 }
 
@@ -48,7 +48,7 @@ LearnedPart learn_range(const particle::CollisionSet& set, const DocumentSetting
   const Table known = before.topRows(n_known);
   const math::Standardiser scaler(MatrixD(known.matrix()));
   const auto trees =
-      learn_trees(scaled(known, scaler), after.topRows(n_known), {}, settings.trees, trainer, context);
+      learn_trees(scaled_table(known, scaler), after.topRows(n_known), {}, settings.trees, trainer, context);
   learned.part = particle::DocumentPart{scaler, *trees.trees};
   learned.range.hyperparameters = trees.hyperparameters;
   std::ranges::copy(trees.rounds, learned.range.rounds.begin());

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -12,6 +11,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/base/stopwatch.hpp"
 
 namespace elrom::surrogate {
 namespace {
@@ -20,16 +20,6 @@ using particle::Table;
 using Rows = std::vector<Eigen::Index>;
 
 constexpr std::size_t fewest_records = 10;
-
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 Rows shuffled(std::size_t n, base::Seed seed) {
   Rows rows(n);
@@ -88,10 +78,10 @@ class Learning {
 
   LearnedTrees run() {
     LearnedTrees learned{.hyperparameters = settings_.fixed};
-    const Stopwatch search_watch;
+    const base::Stopwatch search_watch;
     if (settings_.trials > 0) search(learned);
     learned.search_seconds = search_watch.seconds();
-    const Stopwatch fit_watch;
+    const base::Stopwatch fit_watch;
     fit(learned);
     learned.fit_seconds = fit_watch.seconds();
     return learned;

@@ -5,6 +5,7 @@
 // Thread rule: pure functions.
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,9 @@ using study::noise_at_loads;
 using study::noise_energy;
 using study::training_statistics;
 using study::TrainingStatistics;
+
+/// A score of what nothing is known of.
+inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 struct WorstCell {
   std::size_t cell = 0;
