@@ -2,8 +2,8 @@
 
     headers_compile_alone.py COMPILER INCLUDE_DIR WORK_DIR [FLAG ...]
 
-Parsing Eigen is most of the cost, so headers that include it themselves, or through other headers of ours, get it from one
-precompiled header: they would parse the same. Any other header compiles with nothing before it. What passed is kept in
+Parsing Eigen and the standard library is most of the cost. A header that includes all of a few of these itself, or through
+other headers of ours, gets them precompiled: it would parse the same. Nothing else stands before it. What passed is kept in
 WORK_DIR by the digest of all that it reads of ours, and is not compiled again."""
 import concurrent.futures
 import hashlib
@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 
+PRECOMPILED = (("Eigen/Core", "filesystem", "string", "vector"), ("Eigen/Core",), ("filesystem", "string", "vector"), ("string", "vector"))
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 
 
@@ -43,23 +44,29 @@ def compile_alone(compiler, flags, header, digest, kept, precompiled):
     return None
 
 
+def precompile(compiler, flags, names, work):
+    header = work / (re.sub(r"\W", "_", "_".join(names)) + ".hpp")
+    header.write_text("".join(f"#include <{name}>\n" for name in names))
+    subprocess.run([compiler, *flags, "-x", "c++-header", str(header), "-o", str(header) + ".gch"], check=True)
+    return header
+
+
 def main():
     compiler, root, work = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
     flags = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", f"-I{root}"]
     flags += [flag for flag in sys.argv[4:] if flag not in ("", "-isystem/usr/include")]  # that one breaks #include_next
     work.mkdir(parents=True, exist_ok=True)
-    eigen = work / "eigen.hpp"
-    eigen.write_text("#include <Eigen/Core>\n")
-    subprocess.run([compiler, *flags, "-x", "c++-header", str(eigen), "-o", str(eigen) + ".gch"], check=True)
+    precompiled = {names: precompile(compiler, flags, names, work) for names in PRECOMPILED}
     jobs = []
     with concurrent.futures.ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2)) as pool:
         for path in sorted(root.rglob("*.hpp")):
             header, seen = str(path.relative_to(root)), set()
-            needs_eigen = "Eigen/Core" in closure(header, root, seen)
+            others = closure(header, root, seen)
+            before = next((precompiled[names] for names in PRECOMPILED if others.issuperset(names)), None)
             content = "".join((root / name).read_text() for name in sorted(seen)) + " ".join([compiler, *flags])
             digest = hashlib.sha256(content.encode()).hexdigest()
             jobs.append((header, pool.submit(compile_alone, compiler, flags, header, digest,
-                                             work / header.replace("/", "_"), eigen if needs_eigen else None)))
+                                             work / header.replace("/", "_"), before)))
     failed = [(header, job.result()) for header, job in jobs if job.result() is not None]
     for header, errors in failed:
         print(f"{header} does not compile alone:\n{errors}")

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 struct Failure {
   std::string name, variable;
   std::map<std::string, std::string> environment = {};
-  std::size_t few = 12;            ///< how many are tried in the short campaign
+  std::size_t few = 8;            ///< how many are tried in the short campaign
   bool libraries_may_die = false;  ///< those of others; we may not, and files may not suffer
 };
 
@@ -193,8 +193,8 @@ Tally under(const std::vector<Failure>& failures, const Workshop& shop, const st
 
 Tally failing_writes(const Workshop& shop) {
   return under({{"full disk at call", "ELROM_FAIL_AT"},
-                {"broken disk at call", "ELROM_FAIL_AT", {{"ELROM_FAIL_WITH", std::to_string(EIO)}}, 4},
-                {"short write", "ELROM_SHORT_AT", {}, 4}},
+                {"broken disk at call", "ELROM_FAIL_AT", {{"ELROM_FAIL_WITH", std::to_string(EIO)}}, 3},
+                {"short write", "ELROM_SHORT_AT", {}, 3}},
                shop, "failing_writes");
 }
 
