@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 struct Failure {
   std::string name, variable;
   std::map<std::string, std::string> environment = {};
-  std::size_t few = 8;            ///< how many are tried in the short campaign
+  std::size_t few = 8;             ///< how many are tried in the short campaign
   bool libraries_may_die = false;  ///< those of others; we may not, and files may not suffer
 };
 
