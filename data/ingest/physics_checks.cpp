@@ -18,8 +18,9 @@ constexpr std::size_t fewest_others = 8;
 // values. The second: what follows the load has long tails.
 constexpr double by_median = 1.4826, by_tail = 0.7803;
 
-constexpr auto all_checks = {&read_mesh_cover, &read_flow_direction, &read_gas_balance,
-                             &read_solids_inventory, &read_roughness};
+constexpr auto all_checks = {&read_mesh_cover, &read_empty_fields, &read_flow_direction,
+                             &read_continuity, &read_gas_balance,  &read_solids_inventory,
+                             &read_roughness};
 
 double far(std::size_t n_others) { return 7 * model::growth_for_few(n_others); }
 
