@@ -6,8 +6,8 @@
 // Rule. A reading outside what physics allows is wrong. One outside the usual range of the other cases is
 // suspicious: their median +- k s, with s the standard deviation by the median of their absolute deviations
 // or by its 80th percentile, whichever is larger, and at least the reading's own least spread. Ranges of few
-// cases are themselves uncertain: k is 7, grown for n other cases (model::growth_for_few), and below eight of
-// them physics alone judges.
+// cases are themselves uncertain: k is the reading's own (7 for most), grown for n other cases
+// (model::growth_for_few), and below eight of them physics alone judges.
 
 #include <functional>
 #include <optional>

@@ -82,6 +82,10 @@ struct Reading {
   /// physics alone judges.
   double least_spread = 0;
   bool logarithmic = false;  ///< other cases are compared by logarithms; value > 0
+  /// Readings that are means of several scatter little, and are judged more closely: spreads from the other
+  /// cases' middle that are usual, and the number of other cases that makes them twice as many.
+  double reach = 7, few_cases = 20;
+  bool only_above = false;  ///< no value is unlike the others by being small
 };
 
 struct CaseSummary {
