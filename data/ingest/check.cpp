@@ -114,8 +114,9 @@ std::string_view name_of(Severity severity) { return severities.name(severity); 
 
 const std::vector<std::string>& finding_kinds() {
   static const std::vector<std::string> kinds{
-      "out_of_bounds", "unit",           "far_input",   "duplicate",        "near_duplicate", "outlier",
-      "mesh_cover",    "flow_direction", "gas_balance", "solids_inventory", "roughness"};
+      "out_of_bounds", "unit",        "far_input",      "duplicate",  "near_duplicate", "outlier",
+      "mesh_cover",    "empty_field", "flow_direction", "continuity", "gas_balance",    "solids_inventory",
+      "roughness"};
   return kinds;
 }
 
@@ -163,7 +164,8 @@ CheckedCase view_of(const field::CaseRecord& record, const MatrixF& values, cons
           .values = ConstMapF(values.data(), values.rows(), values.cols()),
           .mesh = &mesh,
           .furnace = furnace,
-          .coverage = coverage};
+          .coverage = coverage,
+          .resampling_error = record.resampling_error};
 }
 
 void Checker::add(const CheckedCase& view) {

@@ -1,6 +1,8 @@
 #include "elrom/ingest/onto_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "conform.hpp"
@@ -40,6 +42,10 @@ void expect_same_place(const CfdCase& one, const field::Mesh& mesh) {
   }
 }
 
+double sum(std::span<const double> volume) {
+  return volume.empty() ? std::nan("") : std::reduce(volume.begin(), volume.end());
+}
+
 double share(std::size_t part, std::size_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -52,6 +58,7 @@ struct OntoMesh::Impl {
   std::stop_token stop;
   std::string digest;
   std::optional<Resampler> there, back;
+  double source_volume = 0;  //!< of the last mesh; NaN where it is not known
 
   void use_mesh_of(const CfdCase& one) {
     base::Sha256 hash;
@@ -62,6 +69,7 @@ struct OntoMesh::Impl {
     expect_same_place(one, mesh);
     there.emplace(one.centre, one.volume, mesh.centre, n_threads, stop);
     back.emplace(mesh.centre, mesh.volume, one.centre, n_threads, stop);
+    source_volume = sum(one.volume);
     digest = new_digest;
   }
 };
@@ -84,7 +92,8 @@ field::Snapshot OntoMesh::bring(const CfdCase& one, const field::InputSchema& sc
 Coverage OntoMesh::coverage() const {
   check(impl_->there.has_value(), "no case was brought to the mesh");
   return {.uncovered = share(impl_->there->n_far(), impl_->there->n_target()),
-          .beyond = share(impl_->back->n_far(), impl_->back->n_target())};
+          .beyond = share(impl_->back->n_far(), impl_->back->n_target()),
+          .volume = impl_->source_volume / sum(impl_->mesh.volume)};
 }
 
 std::size_t OntoMesh::n_outside() const { return impl_->there->n_outside(); }

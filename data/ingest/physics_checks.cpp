@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "elrom/base/text.hpp"
@@ -14,14 +15,14 @@ namespace elrom::ingest {
 namespace {
 
 constexpr std::size_t fewest_others = 8;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 // Standard deviation over the median and the 80th percentile of absolute deviations, of normally distributed
 // values. The second: what follows the load has long tails.
 constexpr double by_median = 1.4826, by_tail = 0.7803;
 
-constexpr auto all_checks = {&read_mesh_cover, &read_flow_direction, &read_gas_balance,
-                             &read_solids_inventory, &read_roughness};
-
-double far(std::size_t n_others) { return 7 * model::growth_for_few(n_others); }
+constexpr auto all_checks = {&read_mesh_cover, &read_empty_fields, &read_flow_direction,
+                             &read_continuity, &read_gas_balance,  &read_solids_inventory,
+                             &read_roughness};
 
 double scaled(const Reading& reading) {
   return reading.logarithmic ? std::log(reading.value) : reading.value;
@@ -37,9 +38,10 @@ Range usual_range(const std::vector<double>& others, const Reading& reading) {
   for (const double value : others) deviations.push_back(std::abs(value - middle));
   const double spread =
       std::max({by_median * median(deviations), by_tail * quantile(deviations, 0.8), reading.least_spread});
-  const double reach = far(others.size()) * spread;
-  if (reading.logarithmic) return {std::exp(middle - reach), std::exp(middle + reach)};
-  return {middle - reach, middle + reach};
+  const double reach = reading.reach * model::growth_for_few(others.size(), reading.few_cases) * spread;
+  const double low = reading.only_above ? -infinity : middle - reach, high = middle + reach;
+  if (!reading.logarithmic) return {low, high};
+  return {reading.only_above ? low : std::exp(low), std::exp(high)};
 }
 
 /// Scaled values of every reading, by what it is, with the case that each belongs to.

@@ -6,8 +6,8 @@
 // Rule. A reading outside what physics allows is wrong. One outside the usual range of the other cases is
 // suspicious: their median +- k s, with s the standard deviation by the median of their absolute deviations
 // or by its 80th percentile, whichever is larger, and at least the reading's own least spread. Ranges of few
-// cases are themselves uncertain: k is 7, grown for n other cases (model::growth_for_few), and below eight of
-// them physics alone judges.
+// cases are themselves uncertain: k is the reading's own (7 for most), grown for n other cases
+// (model::growth_for_few), and below eight of them physics alone judges.
 
 #include <functional>
 #include <optional>
@@ -27,7 +27,13 @@ struct PhysicsView {
 
   /// Cells of a field; empty when it is not there.
   [[nodiscard]] std::span<const float> field(std::string_view name) const;
+  /// Whether it is known to be a furnace that gas passes upward.
+  [[nodiscard]] bool is_described() const { return one.furnace && !one.furnace->openings.empty(); }
   [[nodiscard]] double volume(std::size_t cell) const { return one.volume.empty() ? 1.0 : one.volume[cell]; }
+  /// The same as a function.
+  [[nodiscard]] auto weight() const {
+    return [this](std::size_t cell) { return volume(cell); };
+  }
 };
 
 // The checks. Each leaves out what the case lacks the quantities for.
@@ -36,6 +42,8 @@ struct PhysicsView {
 [[nodiscard]] std::vector<Reading> read_solids_inventory(const PhysicsView& view);
 [[nodiscard]] std::vector<Reading> read_mesh_cover(const PhysicsView& view);
 [[nodiscard]] std::vector<Reading> read_roughness(const PhysicsView& view);
+[[nodiscard]] std::vector<Reading> read_continuity(const PhysicsView& view);
+[[nodiscard]] std::vector<Reading> read_empty_fields(const PhysicsView& view);
 
 /// Readings of all checks; those that are not finite are left out.
 [[nodiscard]] std::vector<Reading> read_physics(const CheckedCase& one);

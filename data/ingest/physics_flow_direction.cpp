@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "correlation.hpp"
 #include "physics_checks.hpp"
 
 namespace elrom::ingest {
@@ -16,7 +17,7 @@ class Directions {
   void add(const std::string& quantity, const std::string& what, double value, double low, double high) {
     Reading reading{
         .check = "flow_direction", .quantity = quantity, .what = what, .value = value, .least_spread = 0.02};
-    if (view_.one.furnace && !view_.one.furnace->openings.empty()) {
+    if (view_.is_described()) {
       reading.low = low;
       reading.high = high;
     }
@@ -25,13 +26,13 @@ class Directions {
 
   /// NaN where one of them is missing or constant. Weighted by volume.
   [[nodiscard]] double correlation(std::span<const float> a, std::span<const float> b) const {
-    return correlation(
-        a.size(), b.size(), [&](std::size_t i) { return double{a[i]}; },
-        [&](std::size_t i) { return double{b[i]}; });
+    if (a.empty() || b.empty()) return std::nan("");
+    return ingest::correlation(
+        a.size(), view_.weight(), [&](std::size_t i) { return a[i]; }, [&](std::size_t i) { return b[i]; });
   }
   [[nodiscard]] double correlation_with_height(std::span<const float> a) const {
-    return correlation(
-        a.size(), a.size(), [&](std::size_t i) { return double{a[i]}; },
+    return ingest::correlation(
+        a.size(), view_.weight(), [&](std::size_t i) { return a[i]; },
         [&](std::size_t i) { return height(i); });
   }
   /// Mean over root mean square.
@@ -61,26 +62,6 @@ class Directions {
   [[nodiscard]] double height(std::size_t i) const {
     return (*view_.one.centre)(static_cast<Eigen::Index>(i), 2);
   }
-  template <class A, class B>
-  [[nodiscard]] double correlation(std::size_t n, std::size_t n_b, A a, B b) const {
-    if (n == 0 || n_b != n) return std::nan("");
-    double total = 0, mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      total += view_.volume(i);
-      mean_a += view_.volume(i) * a(i);
-      mean_b += view_.volume(i) * b(i);
-    }
-    mean_a /= total;
-    mean_b /= total;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double w = view_.volume(i), x = a(i) - mean_a, y = b(i) - mean_b;
-      aa += w * x * x;
-      bb += w * y * y;
-      ab += w * x * y;
-    }
-    return ab / std::sqrt(aa * bb);
-  }
-
   const PhysicsView& view_;
   std::vector<Reading> readings_;
 };

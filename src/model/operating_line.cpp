@@ -23,7 +23,6 @@ constexpr double least_growth = 0.3;      // far along the line the deviation st
 constexpr double usual_share = 0.025, most_share = 0.05;
 constexpr double wanted_limit = 2.3;  // an input 3 deviations off is then found nine times in ten
 constexpr double far_beyond = 1.6;    // times the limit
-constexpr double few_cases = 20;      // so many, and a limit must be twice as wide
 constexpr double never = std::numeric_limits<double>::infinity();
 
 /// One factor for the covariance of standardised inputs.
@@ -130,9 +129,9 @@ struct OperatingLine::Learned {
   }
 };
 
-double growth_for_few(std::size_t n_cases) {
-  const double few = few_cases / static_cast<double>(n_cases);
-  return 1 + few * few;
+double growth_for_few(std::size_t n_cases, double few) {
+  const double share = few / static_cast<double>(n_cases);
+  return 1 + share * share;
 }
 
 double UsualInput::distance(double given) const {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "elrom/ingest/check.hpp"
+#include "elrom/ingest/onto_mesh.hpp"
 #include "support/planted_faults.hpp"
 
 namespace elrom::ingest {
@@ -51,6 +52,15 @@ std::vector<Finding> alone(const CfdCase& one) {
   return findings_on(checker.findings(), one.record.inputs.name);
 }
 
+/// On a mesh as fine as the CFD's, as import brings it.
+void add_on_mesh(Checker& checker, const CfdCase& one) {
+  static const auto mesh = field::make_furnace_mesh({}, 10, 21, 33);
+  OntoMesh onto_mesh(mesh, 1);
+  const auto snapshot = onto_mesh.bring(one, one.schema, one.fields);
+  checker.add(view_of(snapshot.record, snapshot.fields, mesh, one.schema, one.fields, &furnace(),
+                      onto_mesh.coverage()));
+}
+
 CfdCase with_fault(const std::string& kind, std::size_t variant = 0) {
   auto one = shipped_set()[2];
   for (const auto& fault : test::planted_faults())
@@ -74,6 +84,90 @@ TEST(PhysicsChecks, AStoresFirstCaseIsJudgedByPhysics) {
   EXPECT_THAT(alone(with_fault("inventory_off", 1)), Not(IsEmpty()));
   for (std::size_t field = 0; field < 9; ++field)
     EXPECT_THAT(alone(with_fault("cells_shuffled", field)), of_kind("roughness")) << field;
+}
+
+auto about(const std::string& kind, const std::string& quantity, const std::string& what) {
+  return Contains(AllOf(Field(&Finding::kind, kind), Field(&Finding::quantity, quantity),
+                        Field(&Finding::severity, Severity::wrong),
+                        Field(&Finding::message, HasSubstr(what))));
+}
+
+TEST(PhysicsChecks, AFieldOfOneValueIsEmptyAlsoAsTheFirstCase) {
+  EXPECT_THAT(alone(with_fault("solid_z_constant")),
+              about("empty_field", "solid_velocity_z", "is 0, plausible from"));
+  auto one = shipped_set()[2];
+  one.values.row(test::row_of(one, "pressure")).setConstant(101325.1F);
+  EXPECT_THAT(alone(one), about("empty_field", "pressure", "scatter of pressure"));
+}
+
+TEST(PhysicsChecks, VelocitiesThatCopyAnotherAreFoundAsTheyAreOrAsALine) {
+  for (std::size_t variant = 0; variant < 3; ++variant)
+    for (const std::string axis : {"x", "y", "z"})
+      EXPECT_THAT(
+          alone(with_fault("solid_copies_gas", variant)),
+          about("empty_field", "gas_velocity_" + axis, "solid_velocity_" + axis + " does not explain"))
+          << variant;
+}
+
+TEST(PhysicsChecks, VelocitiesWhoseAxesChangedPlacesBreakContinuity) {
+  EXPECT_THAT(alone(with_fault("axes_exchanged")), about("continuity", "", "plausible from 0.2"));
+  auto one = shipped_set()[2];
+  test::scale_field(one, "gas_velocity_x", -1);
+  test::scale_field(one, "gas_velocity_y", -1);
+  EXPECT_THAT(alone(one), of_kind("continuity"));
+}
+
+// Columns that lean, as in the furnace's taper, meet other gas above.
+TEST(PhysicsChecks, ContinuityIsReadAcrossLeaningColumns) {
+  auto mesh = field::make_furnace_mesh({.bottom_width_m = 5.3, .taper_height_m = 47}, 10, 10, 12);
+  CfdCase one{
+      .record = {}, .schema = {}, .centre = mesh.centre, .volume = mesh.volume, .fields = {}, .values = {}};
+  one.values.resize(3, mesh.centre.rows());
+  for (Eigen::Index f = 0; f < 3; ++f)
+    one.fields.push_back(field::field_info("gas_velocity_" + std::string(1, "xyz"[f])));
+  // u = x^2 y, v = 0, w = -2 x y z: divergence-free.
+  for (Eigen::Index i = 0; i < one.values.cols(); ++i) {
+    const auto x = mesh.centre(i, 0), y = mesh.centre(i, 1), z = mesh.centre(i, 2);
+    one.values.col(i) << static_cast<float>(x * x * y), 0.0F, static_cast<float>(-2 * x * y * z);
+  }
+  for (const auto& reading : read_continuity({.one = view_of(one, &mesh), .audit = {}}))
+    EXPECT_GT(reading.value, 0.99);
+}
+
+TEST(PhysicsChecks, KinematicPressureIsMoreThanTheSolidsWeigh) {
+  EXPECT_THAT(alone(with_fault("pressure_kinematic")), about("solids_inventory", "pressure", "0.25 to 1.2"));
+}
+
+TEST(PhysicsChecks, AFifthOfTheSolidsMissingIsWrong) {
+  EXPECT_THAT(alone(with_fault("fraction_low")),
+              about("solids_inventory", "solid_volume_fraction", "0.85 to 1.12"));
+}
+
+TEST(PhysicsChecks, MissingCellsAreMissingVolume) {
+  for (std::size_t variant = 0; variant < 3; ++variant) {
+    Checker checker;
+    add_on_mesh(checker, with_fault("cells_missing", variant));
+    EXPECT_THAT(checker.findings(), about("mesh_cover", "", "volume of the CFD's cells")) << variant;
+  }
+}
+
+// Where an export has no volumes, what the other cases lose in resampling tells.
+TEST(PhysicsChecks, MissingCellsAreLostInResampling) {
+  Checker checker;
+  for (std::size_t i = 0; i < shipped_set().size(); ++i) {
+    auto one = i == 2 ? with_fault("cells_missing") : shipped_set()[i];
+    one.volume.clear();
+    add_on_mesh(checker, one);
+  }
+  EXPECT_THAT(
+      findings_on(checker.findings(), shipped_set()[2].record.inputs.name),
+      Contains(AllOf(Field(&Finding::kind, "mesh_cover"), Field(&Finding::severity, Severity::suspicious),
+                     Field(&Finding::message, HasSubstr("error of resampling")))));
+}
+
+TEST(PhysicsChecks, AnInstantIsRougherThanAverages) {
+  for (std::size_t variant = 0; variant < 6; ++variant)
+    EXPECT_THAT(among_others(with_fault("instant", variant)), of_kind("roughness")) << variant;
 }
 
 TEST(PhysicsChecks, AnInletThatChangedPlacesWithThePrimaryAirBreaksTheBalance) {

@@ -20,10 +20,12 @@
 namespace elrom::ingest {
 
 /// How well the CFD's mesh and the reduced mesh lie on each other: shares of cells beyond the edge of the
-/// other mesh by more than its cells' size.
+/// other mesh by more than its cells' size, and their volumes.
 struct Coverage {
   double uncovered = 0;  ///< of the reduced cells
   double beyond = 0;     ///< of the CFD's cells
+  /// Of the CFD's cells over that of the reduced ones; NaN where one of them is not known.
+  double volume = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A case as the checks look at it, on any mesh; nothing is owned.
@@ -38,8 +40,9 @@ struct CheckedCase {
   ConstMapF values;  ///< SI, (n_fields, n_cells)
   /// Of these centres and volumes, where cells come plane by plane; nullptr: no planes are known.
   const field::Mesh* mesh = nullptr;
-  const field::Furnace* furnace = nullptr;  ///< nullptr: nobody described it
-  std::optional<Coverage> coverage = {};    ///< nothing: not resampled here
+  const field::Furnace* furnace = nullptr;        ///< nullptr: nobody described it
+  std::optional<Coverage> coverage = {};          ///< nothing: not resampled here
+  std::span<const double> resampling_error = {};  ///< (n_fields); empty: never resampled
 };
 
 /// Positive numbers that a field's unit scales. NaN where a field or the volumes are missing.
@@ -79,6 +82,10 @@ struct Reading {
   /// physics alone judges.
   double least_spread = 0;
   bool logarithmic = false;  ///< other cases are compared by logarithms; value > 0
+  /// Readings that are means of several scatter little, and are judged more closely: spreads from the other
+  /// cases' middle that are usual, and the number of other cases that makes them twice as many.
+  double reach = 7, few_cases = 20;
+  bool only_above = false;  ///< no value is unlike the others by being small
 };
 
 struct CaseSummary {

@@ -24,7 +24,7 @@ enum class Severity {
 struct Finding {
   std::string kind;  ///< "unreadable", "not_finite", "out_of_bounds", "unit", "far_input", "duplicate",
       ///< "near_duplicate", "outlier", "dead_cells", "dead_input", "other_layout", "mesh_cover",
-      ///< "flow_direction", "gas_balance", "solids_inventory", "roughness"
+      ///< "empty_field", "flow_direction", "continuity", "gas_balance", "solids_inventory", "roughness"
   Severity severity = Severity::suspicious;
   std::string case_name;   ///< empty: all cases
   std::string quantity;    ///< field or input

@@ -24,8 +24,8 @@
 namespace elrom::model {
 
 /// By how much a limit must grow that was drawn for many cases, where only n of them tell what is usual:
-/// 1 + (20 / n)^2. Chosen on stores of 8 to 64 of the 64 shipped training cases, drawn at random.
-[[nodiscard]] double growth_for_few(std::size_t n_cases);
+/// 1 + (few / n)^2. Chosen on stores of 8 to 64 of the 64 shipped training cases, drawn at random.
+[[nodiscard]] double growth_for_few(std::size_t n_cases, double few = 20);
 
 /// Of one input, SI: "177 +- 11 is usual".
 struct UsualInput {
