@@ -1,5 +1,6 @@
 // Tables of cell values as text: Fluent's ASCII solution data, and plain CSV with `name [unit]` headings.
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -54,7 +55,9 @@ std::vector<std::string> split_header(std::string_view line, bool commas) {
     return headings;
   }
   // "pressure [Pa]" is one heading also where blanks separate: a bracket belongs to the word before it.
-  for (const auto& word : base::split(base::trim(line), ' ')) {
+  std::string blanks(line);
+  std::ranges::replace(blanks, '\t', ' ');
+  for (const auto& word : base::split(base::trim(blanks), ' ')) {
     const auto text = base::trim(word);
     if (text.empty()) continue;
     if (text.front() == '[' && !headings.empty())
@@ -250,6 +253,19 @@ std::string case_name(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+bool begins_like_cells(const std::filesystem::path& path) {
+  constexpr std::size_t longest_header = std::size_t{1} << 16;
+  constexpr std::ptrdiff_t enough = 2;
+  const auto text = io::begin_of_text_file(path, longest_header);
+  Lines lines(text);
+  const auto header = lines.next();
+  if (!header) return false;
+  const auto headings = split_header(*header, header->find(',') != std::string_view::npos);
+  return std::ranges::count_if(headings, [](const std::string& heading) {
+           return column_meaning(base::split_unit(heading).name).kind != ColumnKind::ignored;
+         }) >= enough;
+}
 
 CfdCase read_fluent_ascii(const std::filesystem::path& path) {
   const auto text = io::read_text_file(path);

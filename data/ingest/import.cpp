@@ -7,6 +7,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/ingest/case_files.hpp"
+#include "elrom/ingest/cases_table.hpp"
 #include "elrom/ingest/onto_mesh.hpp"
 
 namespace elrom::ingest {

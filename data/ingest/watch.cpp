@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
@@ -22,16 +23,23 @@ bool is_cases_table(const fs::path& path) {
   }
 }
 
-/// By its name: what a solver may export. Hidden files are in the making.
+/// Neither hidden, as files in the making are, nor a reason that we wrote.
+bool is_a_users(const fs::path& path) {
+  const auto name = path.filename().string();
+  return !name.starts_with('.') && !name.ends_with(".reason.txt");
+}
+
+bool is_text(const fs::path& path) { return !fs::is_directory(path) && !is_hdf5(path); }
+
+/// By its name: what a solver may export.
 bool may_be_case(const fs::directory_entry& entry) {
   const auto name = entry.path().filename().string();
-  if (name.starts_with('.')) return false;
+  if (!is_a_users(entry.path())) return false;
   if (entry.is_directory()) return fs::is_directory(entry.path() / "constant" / "polyMesh");
   constexpr std::array<std::string_view, 8> endings{".h5",  ".hdf5", ".hdf", ".txt",
                                                     ".csv", ".dat",  ".asc", ".gz"};
   const auto ends = [&](std::string_view ending) { return name.ends_with(ending); };
-  return entry.is_regular_file() && std::any_of(endings.begin(), endings.end(), ends) &&
-         !name.ends_with(".reason.txt");
+  return entry.is_regular_file() && std::any_of(endings.begin(), endings.end(), ends);
 }
 
 bool is_same_file(const fs::path& a, const fs::path& b) {
@@ -77,15 +85,22 @@ Watcher::State Watcher::state_of(const fs::path& path) {
   return state;
 }
 
-Watcher::States Watcher::list() const {
+bool Watcher::is_ours(const fs::path& path) const {
   const auto& import = options_.import;
+  const std::array ours{import.store, import.mesh, import.cases, import.furnace, options_.refused};
+  return std::ranges::any_of(ours, [&](const fs::path& one) { return is_same_file(path, one); });
+}
+
+/// @param others gets what is no case by its name
+Watcher::States Watcher::list(std::vector<fs::path>& others) const {
   States states;
   for (const auto& entry : fs::directory_iterator(options_.folder)) {
     const auto& path = entry.path();
-    if (!may_be_case(entry)) continue;
-    const auto is_ours = [&](const fs::path& ours) { return is_same_file(path, ours); };
-    const std::array ours{import.store, import.mesh, import.cases, options_.refused};
-    if (std::any_of(ours.begin(), ours.end(), is_ours)) continue;
+    if (is_ours(path)) continue;
+    if (!may_be_case(entry)) {
+      if (entry.is_regular_file() && is_a_users(path)) others.push_back(path);
+      continue;
+    }
     try {
       states[path] = state_of(path);
     } catch (const fs::filesystem_error&) {
@@ -103,7 +118,8 @@ void Watcher::read_store() {
 }
 
 /// Files that have not changed since the last look, and that the store does not know.
-std::vector<fs::path> Watcher::finished(const States& now) {
+/// @param others gets what is no case by its first line
+std::vector<fs::path> Watcher::finished(const States& now, std::vector<fs::path>& others) {
   std::vector<fs::path> still;
   for (const auto& [path, state] : now) {
     const auto known = settled_.find(path), last = before_.find(path);
@@ -113,9 +129,11 @@ std::vector<fs::path> Watcher::finished(const States& now) {
   if (still.empty()) return still;
   read_store();
   std::erase_if(still, [&](const fs::path& path) {
-    const bool is_known = is_cases_table(path) || in_store_.contains(case_digest(path));
-    if (is_known) settled_[path] = now.at(path);
-    return is_known;
+    const bool is_note = is_text(path) && !begins_like_cells(path);
+    if (is_note && !is_cases_table(path)) others.push_back(path);
+    const bool is_done = is_note || in_store_.contains(case_digest(path));
+    if (is_done) settled_[path] = now.at(path);
+    return is_done;
   });
   return still;
 }
@@ -133,13 +151,16 @@ Refusal Watcher::put_aside(const Refusal& refusal, Log& log) const {
 }
 
 Look Watcher::look(Log& log, const std::stop_token& stop) {
-  const auto now = list();
+  std::vector<fs::path> others;
+  const auto now = list(others);
   Look result;
   for (const auto& [path, state] : now) {
     const auto last = before_.find(path);
     if (!settled_.contains(path) && (last == before_.end() || last->second != state)) ++result.n_unfinished;
   }
-  const auto files = finished(now);
+  const auto files = finished(now, others);
+  std::ranges::copy_if(others, std::back_inserter(result.left_alone),
+                       [&](const fs::path& path) { return told_.insert(path).second; });
   before_ = now;
   if (files.empty()) return result;
   if (options_.before_import) options_.before_import();

@@ -13,6 +13,7 @@
 #include "elrom/base/parallel.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/ingest/case_files.hpp"
+#include "elrom/ingest/cases_table.hpp"
 #include "elrom/ingest/cfd_case.hpp"
 #include "elrom/ingest/check.hpp"
 #include "elrom/ingest/onto_mesh.hpp"
@@ -22,7 +23,7 @@ namespace {
 
 struct CheckOptions {
   std::vector<std::string> targets;
-  std::filesystem::path furnace;
+  std::filesystem::path furnace, cases;
   std::string json;
 };
 
@@ -32,6 +33,7 @@ class Targets {
  public:
   Targets(const CheckOptions& options, ingest::Checker& checker) : checker_(checker) {
     if (!options.furnace.empty()) furnace_ = field::read_furnace(options.furnace);
+    if (!options.cases.empty()) table_ = ingest::read_cases_table(options.cases);
   }
 
   void add(const std::vector<std::string>& targets) {
@@ -67,7 +69,8 @@ class Targets {
   }
 
   void add_file(const std::string& target) {
-    const auto one = ingest::read_case(target);
+    auto one = ingest::read_case(target);
+    if (table_) ingest::complete_inputs(one, *table_);
     const auto* furnace = furnace_ ? &*furnace_ : nullptr;
     if (!onto_mesh_) {
       const auto layers = ingest::layers_of(one);
@@ -82,12 +85,14 @@ class Targets {
 
   ingest::Checker& checker_;
   std::optional<field::Furnace> furnace_;
+  std::optional<ingest::CasesTable> table_;
   std::deque<field::SnapshotStore> stores_;
   std::optional<ingest::OntoMesh> onto_mesh_;  //!< of the first store
   std::set<std::string> told_;
 };
 
 int check(const CheckOptions& options) {
+  if (!options.json.empty()) base::expect_writable(options.json);
   ingest::Checker checker;
   Targets(options, checker).add(options.targets);
   const auto findings = checker.findings();
@@ -129,6 +134,10 @@ give the store (or all files) together with a new file. Exit status 3 when somet
       ->add_option("--furnace", options->furnace,
                    "Furnace description, for balances [default: the store's, where one is given]")
       ->type_name("FURNACE.toml");
+  command
+      ->add_option("--cases", options->cases,
+                   "Table of boundary conditions, for formats that carry none; cases are found by name")
+      ->type_name("CASES.csv");
   command->add_option("--json", options->json, "Write the findings to this file too")->type_name("FILE");
   command->callback([options, &chosen] { chosen = [options] { return check(*options); }; });
 }

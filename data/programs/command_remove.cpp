@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include "commands.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/log.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/field/snapshot_store.hpp"
 
@@ -35,6 +38,17 @@ std::vector<std::string> matching(const field::SnapshotStore& store,
   return names;
 }
 
+/// Those of `names` that the store's furnace description holds out: studies judge on them.
+std::vector<std::string> held_out(const field::SnapshotStore& store, const std::vector<std::string>& names) {
+  std::vector<std::string> found;
+  if (!store.furnace()) return found;
+  std::ranges::copy_if(names, std::back_inserter(found), [&](const std::string& name) {
+    return std::ranges::any_of(store.furnace()->held_out,
+                               [&](const std::string& pattern) { return base::matches(name, pattern); });
+  });
+  return found;
+}
+
 int remove(const RemoveOptions& options) {
   const auto store = field::SnapshotStore::open(options.store);
   const auto names = matching(store, options.patterns);
@@ -43,9 +57,15 @@ int remove(const RemoveOptions& options) {
     throw InputError({.what = "no case would be left",
                       .where = options.store.string(),
                       .advice = "remove the file itself; nothing was removed"});
+  const auto judges = held_out(store, names);
   field::remove_cases(options.store, {names.begin(), names.end()});
   fmt::print("removed: {}\n{} case{} left in {}\n", base::join(names, ", "), n_left,
              n_left == 1 ? " is" : "s are", options.store.string());
+  if (!judges.empty())
+    make_console_log()->warning(
+        "held out so far, to judge models on: " + base::join(judges, ", ") +
+        "; until its next run or retrain a study that held them out is judged on others by "
+        "'elrom-report accuracy STUDY --cases NAMES'");
   fmt::print(
       "A study learns without them from its next 'elrom-train retrain' on; a watched folder brings back what "
       "still lies there.\n");

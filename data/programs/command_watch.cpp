@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -97,6 +98,17 @@ class Pending {
   std::filesystem::path store_, file_;
 };
 
+/// "README.txt, solver.log and 12 more"
+std::string names_of(std::vector<std::filesystem::path> files) {
+  constexpr std::size_t most = 5;
+  std::ranges::sort(files);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(most, files.size()); ++i)
+    names.push_back(files[i].filename().string());
+  return base::join(names, ", ") +
+         (files.size() > most ? " and " + std::to_string(files.size() - most) + " more" : "");
+}
+
 class Watch {
  public:
   explicit Watch(const WatchOptions& options)
@@ -139,6 +151,7 @@ class Watch {
     n_added_ += found.added.size();
     n_refused_ += found.refused.size();
     n_unfinished_ = found.n_unfinished;
+    if (!found.left_alone.empty()) fmt::print("left alone, no exports: {}\n", names_of(found.left_alone));
     for (const auto& refusal : found.refused)
       fmt::print("refused: {}: {}\n", refusal.file.filename().string(), refusal.reason);
     if (!found.added.empty())
@@ -181,7 +194,7 @@ void add_watch(cli::App& program, Work& chosen) {
       "watch",
       R"(Import finished exports as they come into a folder. Finished: two looks find the same size and time of change. One bad
 file does not keep the others out: it moves to a folder, with the reason beside it. Imported files stay where they are and
-are known by their digest. Exit status of --once: 0 cases were added, 3 all were refused, 8 nothing new.)");
+are known by their digest; what is no export is left alone and named once. Exit status of --once: 0 cases were added, 3 all were refused, 8 nothing new.)");
   command->add_option("DIR", watch.folder, "Folder to watch")->required()->type_name("DIR");
   command->add_option("--store", watch.import.store, "Snapshot store to create or to add to")
       ->type_name("STORE.h5")

@@ -26,7 +26,9 @@ JSON or TOML with the same names; - reads a CSV table from standard input. Units
 in the unit that the bundle was trained with. Spreadsheets' semicolons and decimal commas are understood. --set changes an
 input of every case chosen, and the changed case gets a name of its own (load_064+primary_air=180, or --name); without
 --cases it must give all inputs. --sweep predicts every case chosen as it is, and once for every value of an input;
-several --sweep: one input at a time, with --grid every combination.
+several --sweep: one input at a time, with --grid every combination. All other inputs are held at the base's values: an
+input that does not move alone in a furnace may leave what was trained, and the gas balance then tells of the
+combination that was asked for. Summary and page say where that is so.
 
 Summary: when sweeping, or with --summary FILE.csv, a table with a line a case: verdict and reason, solids [kg], gas balance and
 pressure drop as far as fields and furnace tell, mean, lowest and highest value of each field, and the change of each

@@ -54,11 +54,24 @@ void check_name(const std::string& name) {
        .advice = "--name gives another"});
 }
 
-/// "+primary_air=180": the value in the user's unit.
-std::string change_text(const field::InputInfo& info, double si) {
+/// "kg/s" as a file's name can have it: "kg_s".
+std::string in_a_name(std::string symbol) {
+  std::ranges::replace_if(
+      symbol, [](char c) { return std::string_view("/\\ ()*^").find(c) != std::string_view::npos; }, '_');
+  return symbol;
+}
+
+/// "+primary_air=180", with a unit where that is not the one that numbers without a unit are in.
+std::string change_text(const field::InputInfo& info, double si, const base::Unit& unit) {
   constexpr int digits = 6;
-  const auto& unit = user_unit(info);
-  return "+" + info.name + "=" + base::rounded(unit.from_si(si), digits);
+  const auto symbol = unit.symbol == user_unit(info).symbol ? "" : in_a_name(unit.symbol);
+  return "+" + info.name + "=" + base::rounded(unit.from_si(si), digits) + symbol;
+}
+
+/// The unit of "name=value unit"; without one the user's.
+const base::Unit& unit_of_setting(std::string_view setting, const field::InputInfo& info) {
+  const auto given = base::split_quantity(setting.substr(setting.find('=') + 1));
+  return given && !given->symbol.empty() ? base::unit(given->symbol) : user_unit(info);
 }
 
 /// The input that a setting or a sweep names: its text up to '='.
@@ -69,13 +82,15 @@ void apply_settings(std::vector<field::CaseInputs>& cases, const Arguments& argu
   if (arguments.settings.empty()) return;
   for (auto& item : cases) {
     std::string suffix;
-    std::vector<std::size_t> changed;
+    std::vector<CaseList::Moved> changed;
     for (const auto& setting : arguments.settings) {
       field::apply_setting(item, setting, schema);
       const auto i = schema.index_of(base::trim(name_in(setting)));
-      if (std::ranges::find(changed, i) == changed.end()) changed.push_back(i);
+      auto known = std::ranges::find(changed, i, &CaseList::Moved::input);
+      if (known == changed.end()) known = changed.insert(known, {i, nullptr});
+      known->unit = &unit_of_setting(setting, schema[i]);
     }
-    for (const auto i : changed) suffix += change_text(schema[i], item.values[i]);
+    for (const auto& [i, unit] : changed) suffix += change_text(schema[i], item.values[i], *unit);
     const bool from_table = !arguments.cases.empty();
     if (!arguments.name.empty()) {
       item.name = cases.size() > 1 ? item.name + "+" + arguments.name : arguments.name;
@@ -86,48 +101,82 @@ void apply_settings(std::vector<field::CaseInputs>& cases, const Arguments& argu
 }
 
 struct Sweep {
-  std::size_t input = 0;
+  CaseList::Moved swept;
   std::vector<double> values;  //!< SI
 };
 
-[[noreturn]] void refuse_sweep(const std::string& text) {
-  throw UsageError({.what = "--sweep cannot be read",
+[[noreturn]] void refuse_sweep(const std::string& text, const std::string& what = "--sweep cannot be read",
+                               const std::string& advice = "") {
+  throw UsageError({.what = what,
                     .found = "'" + text + "'",
-                    .expected = "name=start:stop:step, such as 'primary_air=150:200:5 kg/s'"});
+                    .expected = "name=start:stop:step, such as 'primary_air=150:200:5 kg/s'",
+                    .advice = advice});
 }
 
-Sweep parse_sweep(const std::string& text, const field::InputSchema& schema) {
+/// As given, in the sweep's unit.
+struct Steps {
+  double start, step, n;
+  std::string symbol;
+};
+
+Steps steps_of(const std::string& text) {
   constexpr double most_values = 10'000;
   const auto equals = text.find('=');
   const auto sides = base::split(equals == std::string::npos ? "" : text.substr(equals + 1), ':');
   if (sides.size() != 3) refuse_sweep(text);
   const auto start = base::to_double(base::trim(sides[0])), stop = base::to_double(base::trim(sides[1]));
   const auto step = base::split_quantity(sides[2]);
-  const bool numbers = start && stop && step && std::isfinite(*start) && std::isfinite(*stop);
-  if (!numbers || step->value == 0 || (*stop - *start) / step->value < 0) refuse_sweep(text);
+  if (!start || !stop || !step || !std::isfinite(*start) || !std::isfinite(*stop)) refuse_sweep(text);
+  if (step->value == 0) refuse_sweep(text, "--sweep has a step of 0");
   const double n_steps = std::floor((*stop - *start) / step->value + 1e-9);
+  if (n_steps < 0)
+    refuse_sweep(text, "--sweep runs away from its end",
+                 "a step of " + base::number(-step->value) + " leads from " + base::number(*start) + " to " +
+                     base::number(*stop));
   if (n_steps >= most_values)
     throw UsageError(
         {.what = "--sweep has too many values", .found = "'" + text + "'", .expected = "at most 10000"});
+  return {*start, step->value, n_steps, step->symbol};
+}
+
+Sweep parse_sweep(const std::string& text, const field::InputSchema& schema) {
+  const auto steps = steps_of(text);
+  const auto i = schema.index_of(base::trim(name_in(text)));
   field::CaseInputs one{
       .name = "", .load = not_given, .values = std::vector<double>(schema.size(), not_given)};
-  Sweep sweep{schema.index_of(base::trim(name_in(text))), {}};
-  for (double k = 0; k <= n_steps; ++k) {
-    field::apply_setting(
-        one, std::string(name_in(text)) + "=" + base::number(*start + k * step->value) + " " + step->symbol,
-        schema);
-    sweep.values.push_back(one.values[sweep.input]);
+  Sweep sweep{{i, nullptr}, {}};
+  for (double k = 0; k <= steps.n; ++k) {
+    const auto value = base::number(steps.start + k * steps.step) + " " + steps.symbol;
+    field::apply_setting(one, std::string(name_in(text)) + "=" + value, schema);
+    sweep.values.push_back(one.values[i]);
   }
+  sweep.swept.unit = steps.symbol.empty() ? &user_unit(schema[i]) : &base::unit(steps.symbol);
   return sweep;
 }
 
-/// Every combination of the sweeps' values, or one input at a time: lists of (input, value).
-std::vector<std::vector<std::pair<std::size_t, double>>> changes_of(const std::vector<Sweep>& sweeps,
-                                                                    bool grid) {
-  std::vector<std::vector<std::pair<std::size_t, double>>> changes;
+void expect_swept_once(const std::vector<Sweep>& sweeps, const Arguments& arguments,
+                       const field::InputSchema& schema) {
+  std::set<std::size_t> seen;
+  for (const auto& sweep : sweeps)
+    if (!seen.insert(sweep.swept.input).second)
+      throw UsageError("'" + schema[sweep.swept.input].name + "' is swept twice");
+  if (arguments.cases.empty()) return;  // where --set gives the base its values
+  for (const auto& setting : arguments.settings)
+    if (const auto i = schema.index_of(base::trim(name_in(setting))); seen.contains(i))
+      throw UsageError({.what = "'" + schema[i].name + "' is in --set and in --sweep",
+                        .expected = "one of them",
+                        .advice = "the base has the table's value, and the sweep moves it"});
+}
+
+using Changes = std::vector<std::pair<const CaseList::Moved*, double>>;
+
+/// Every combination of the sweeps' values, or one input at a time.
+std::vector<Changes> changes_of(const std::vector<Sweep>& sweeps, bool grid) {
+  std::vector<Changes> changes;
+  if (sweeps.empty()) return changes;
   if (!grid) {
     for (const auto& sweep : sweeps)
-      for (const double value : sweep.values) changes.push_back({{sweep.input, value}});
+      for (const double value : sweep.values) changes.push_back({{&sweep.swept, value}});
     return changes;
   }
   constexpr std::size_t most = 1'000'000;
@@ -135,11 +184,11 @@ std::vector<std::vector<std::pair<std::size_t, double>>> changes_of(const std::v
   for (const auto& sweep : sweeps) {
     if (changes.size() * sweep.values.size() > most)
       throw UsageError("--grid has too many combinations; at most a million");
-    std::vector<std::vector<std::pair<std::size_t, double>>> longer;
+    std::vector<Changes> longer;
     for (const auto& so_far : changes) {
       for (const double value : sweep.values) {
         longer.push_back(so_far);
-        longer.back().emplace_back(sweep.input, value);
+        longer.back().emplace_back(&sweep.swept, value);
       }
     }
     changes = std::move(longer);
@@ -154,12 +203,10 @@ CaseList sweep_all(std::vector<field::CaseInputs> bases, const Arguments& argume
   std::vector<Sweep> sweeps;
   for (const auto& text : arguments.sweeps) {
     sweeps.push_back(parse_sweep(text, schema));
-    if (std::ranges::find(list.swept, sweeps.back().input) != list.swept.end())
-      throw UsageError("'" + schema[sweeps.back().input].name + "' is swept twice");
-    list.swept.push_back(sweeps.back().input);
+    list.swept.push_back(sweeps.back().swept);
   }
-  const auto changes =
-      sweeps.empty() ? decltype(changes_of(sweeps, false)){} : changes_of(sweeps, arguments.grid);
+  expect_swept_once(sweeps, arguments, schema);
+  const auto changes = changes_of(sweeps, arguments.grid);
   for (auto& base : bases) {
     const auto i_base = list.cases.size();
     list.cases.push_back(std::move(base));
@@ -167,10 +214,10 @@ CaseList sweep_all(std::vector<field::CaseInputs> bases, const Arguments& argume
     for (const auto& change : changes) {
       auto variant = list.cases[i_base];
       CaseList::Origin origin{i_base, {}};
-      for (const auto& [input, value] : change) {
-        variant.values[input] = value;
-        variant.name += change_text(schema[input], value);
-        origin.changed.push_back(input);
+      for (const auto& [swept, value] : change) {
+        variant.values[swept->input] = value;
+        variant.name += change_text(schema[swept->input], value, *swept->unit);
+        origin.changed.push_back(swept->input);
       }
       list.cases.push_back(std::move(variant));
       list.origins.push_back(std::move(origin));

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "elrom/base/units.hpp"
 #include "elrom/field/boundary_conditions.hpp"
 #include "elrom/fields/arguments.hpp"
 
@@ -17,9 +18,14 @@ struct CaseList {
     std::size_t base = 0;              ///< the case it was made from; its own number: none
     std::vector<std::size_t> changed;  ///< inputs that a sweep gave it
   };
+  /// An input that a setting or a sweep moves.
+  struct Moved {
+    std::size_t input = 0;
+    const base::Unit* unit = nullptr;  ///< that its values were given in
+  };
   std::vector<field::CaseInputs> cases;
-  std::vector<Origin> origins;     //!< (cases)
-  std::vector<std::size_t> swept;  //!< inputs, in the order of the sweeps
+  std::vector<Origin> origins;  //!< (cases)
+  std::vector<Moved> swept;     //!< in the order of the sweeps
 };
 
 /// @throws UsageError (no such case, an input not given, a sweep that is none), InputError (the table, an

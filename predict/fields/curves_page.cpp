@@ -8,7 +8,6 @@
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "summary.hpp"
-#include "user_unit.hpp"
 
 namespace elrom::fields {
 namespace {
@@ -104,10 +103,10 @@ void draw_line(const Summary& summary, const std::vector<Point>& points, const A
   }
 }
 
-std::string chart(const Summary& summary, const std::vector<Line>& lines, std::size_t input,
+std::string chart(const Summary& summary, const std::vector<Line>& lines, const CaseList::Moved& swept,
                   std::size_t figure) {
-  const auto& info = summary.schema[input];
-  const auto& unit = user_unit(info);
+  const auto& info = summary.schema[swept.input];
+  const auto& unit = *swept.unit;
   std::vector<std::vector<Point>> points;
   std::vector<double> xs, ys;
   for (const auto& line : lines) {
@@ -115,7 +114,7 @@ std::string chart(const Summary& summary, const std::vector<Line>& lines, std::s
     for (const auto k : line.cases) {
       const auto& figures = summary.results[k].figures;
       if (figures.empty() || !std::isfinite(figures[figure])) continue;
-      xs.push_back(unit.from_si(summary.list.cases[k].values[input]));
+      xs.push_back(unit.from_si(summary.list.cases[k].values[swept.input]));
       ys.push_back(figures[figure]);
       points.back().push_back({xs.back(), ys.back(), k});
     }
@@ -144,13 +143,13 @@ std::vector<Line> lines_over(const Summary& summary, std::size_t input) {
     if (!is_base && std::ranges::find(origin.changed, input) == origin.changed.end()) continue;
     std::vector<double> key{static_cast<double>(origin.base)};
     std::string name = list.cases[origin.base].name;
-    for (const auto i : list.swept) {
-      if (i == input) continue;
-      const double value = list.cases[k].values[i];
+    for (const auto& other : list.swept) {
+      if (other.input == input) continue;
+      const double value = list.cases[k].values[other.input];
       key.push_back(value);
-      const auto& unit = user_unit(summary.schema[i]);
       if (origin.changed.size() > 1)
-        name += ", " + summary.schema[i].name + " " + base::rounded(unit.from_si(value)) + " " + unit.symbol;
+        name += ", " + summary.schema[other.input].name + " " + base::rounded(other.unit->from_si(value)) +
+                " " + other.unit->symbol;
     }
     auto& line = lines[key];
     if (line.cases.empty()) line.name = name;
@@ -162,6 +161,19 @@ std::vector<Line> lines_over(const Summary& summary, std::size_t input) {
   return result;
 }
 
+/// What a curve does not show by itself.
+std::string held_sentence(const Summary& summary) {
+  std::string text = "Inputs that are not swept are held at the base's values.";
+  const auto n = n_held_alone(summary);
+  if (n == 0) return text;
+  return text +
+         fmt::format(
+             " In {} of the cases mass or pressure are unlike the training cases', and in their bases they are "
+             "not: the swept inputs moved, and those that move with them in a furnace were held. There the "
+             "gas balance tells of that combination, and not of the model.",
+             n);
+}
+
 }  // namespace
 
 std::string curves_page(const Summary& summary, std::span<const std::size_t> curves) {
@@ -170,15 +182,16 @@ std::string curves_page(const Summary& summary, std::span<const std::size_t> cur
   html +=
       std::string(style) + "</head><body>\n<h1>What if</h1>\n<p>" +
       std::to_string(summary.list.cases.size()) + " cases, " + escaped(program_version()) +
-      ". Full points lie inside what was trained, hollow ones at its edge, hollow red ones outside.</p>\n";
-  for (const auto input : summary.list.swept) {
-    const auto lines = lines_over(summary, input);
-    html += "<h2>" + escaped(summary.schema[input].name) + "</h2>\n<p>";
+      ". Full points lie inside what was trained, hollow ones at its edge, hollow red ones outside.</p>\n<p>" +
+      held_sentence(summary) + "</p>\n";
+  for (const auto& swept : summary.list.swept) {
+    const auto lines = lines_over(summary, swept.input);
+    html += "<h2>" + escaped(summary.schema[swept.input].name) + "</h2>\n<p>";
     for (std::size_t i = 0; i < lines.size(); ++i)
       html += fmt::format("<span class=\"key\" style=\"color:{}\">&#9679; {}</span>",
                           colours[i % colours.size()], escaped(lines[i].name));
     html += "</p>\n";
-    for (const auto figure : curves) html += chart(summary, lines, input, figure);
+    for (const auto figure : curves) html += chart(summary, lines, swept, figure);
   }
   return html + "</body></html>\n";
 }

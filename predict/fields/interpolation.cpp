@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <nanoflann.hpp>
+#include <numeric>
 #include <optional>
 
 #include "elrom/base/error.hpp"
@@ -104,13 +105,70 @@ Vector3d row_of(const MatrixD& centre, std::size_t i) {
   return centre.row(static_cast<Eigen::Index>(i)).transpose();
 }
 
-/// The target that a point lies in; -1: none.
-std::int32_t owner_of(const Vector3d& x, const Places& to, const Nearest& targets) {
-  if (!to.contains) return static_cast<std::int32_t>(targets.find(x, 1).front());
-  for (const auto cell : targets.find(x, n_candidates))
-    if (to.contains(cell, x)) return static_cast<std::int32_t>(cell);
-  return -1;
-}
+/// The cell of a mesh that a point lies in, and where in it.
+class Cells {
+ public:
+  explicit Cells(const field::Mesh& mesh) : mesh_(mesh), centres_(mesh.centre) {}
+  struct Place {
+    std::size_t cell;
+    Vector3d u;
+  };
+  [[nodiscard]] std::optional<Place> find(const Vector3d& x) const {
+    for (const auto cell : centres_.find(x, n_candidates))
+      if (const auto u = Hexahedron(mesh_, cell).find(x)) return Place{cell, *u};
+    return std::nullopt;
+  }
+
+ private:
+  const field::Mesh& mesh_;
+  Nearest centres_;
+};
+
+/// What points of the source belong to: the target that they lie in, or where targets have no faces the one
+/// with the nearest centre, of those that lie in the source themselves.
+class Owners {
+ public:
+  Owners(const field::Mesh& from, const Places& to, int n_threads)
+      : to_(to),
+        inside_(to.contains ? all_of(to) : inside(from, to, n_threads)),
+        centre_(rows_of(to)),
+        nearest_(centre_) {}
+
+  /// -1: none
+  [[nodiscard]] std::int32_t find(const Vector3d& x) const {
+    for (const auto i : nearest_.find(x, to_.contains ? n_candidates : 1))
+      if (!to_.contains || to_.contains(inside_[i], x)) return static_cast<std::int32_t>(inside_[i]);
+    return -1;
+  }
+
+ private:
+  static std::vector<std::size_t> all_of(const Places& to) {
+    std::vector<std::size_t> all(static_cast<std::size_t>(to.centre.rows()));
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+  }
+  static std::vector<std::size_t> inside(const field::Mesh& from, const Places& to, int n_threads) {
+    const Cells cells(from);
+    auto targets = all_of(to);
+    std::vector<char> is_inside(targets.size());
+    base::parallel_for(targets.size(), n_threads, [&](std::size_t i, int) {
+      is_inside[i] = cells.find(row_of(to.centre, i)).has_value() ? 1 : 0;
+    });
+    std::erase_if(targets, [&](std::size_t i) { return is_inside[i] == 0; });
+    return targets;
+  }
+  [[nodiscard]] MatrixD rows_of(const Places& to) const {
+    MatrixD rows(static_cast<Eigen::Index>(inside_.size()), 3);
+    for (std::size_t i = 0; i < inside_.size(); ++i)
+      rows.row(static_cast<Eigen::Index>(i)) = row_of(to.centre, inside_[i]).transpose();
+    return rows;
+  }
+
+  const Places& to_;
+  std::vector<std::size_t> inside_;  //!< targets that can own a point
+  MatrixD centre_;                   //!< of those
+  Nearest nearest_;
+};
 
 }  // namespace
 
@@ -125,7 +183,7 @@ void Interpolator::conservative(const field::Mesh& from, const Places& to, int n
   // At least eight parts for each target, were they spread evenly.
   const double wanted = std::cbrt(8.0 * static_cast<double>(n_target) / static_cast<double>(n_source));
   const auto k = std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(wanted)), 2, 8);
-  const Nearest targets(to.centre);
+  const Owners owners(from, to, n_threads);
   std::vector<std::vector<Entry>> parts(n_source);  // target and volume
   base::parallel_for(n_source, n_threads, [&](std::size_t cell, int) {
     const Hexahedron hexahedron(from, cell);
@@ -138,7 +196,7 @@ void Interpolator::conservative(const field::Mesh& from, const Places& to, int n
                          static_cast<double>(k);
       const double share = std::abs(hexahedron.jacobian(u).determinant());
       sum += share;
-      parts[cell].push_back({owner_of(hexahedron.at(u), to, targets), static_cast<float>(share)});
+      parts[cell].push_back({owners.find(hexahedron.at(u)), static_cast<float>(share)});
     }
     for (auto& part : parts[cell]) part.weight *= static_cast<float>(from.volume[cell] / sum);
   });
@@ -166,23 +224,18 @@ void Interpolator::trilinear(const field::Mesh& from, const Places& to, int n_th
     around[point].push_back(static_cast<std::int32_t>(i / 8));
     volume[point] += from.volume[i / 8];
   }
-  const Nearest sources(from.centre);
+  const Cells cells(from);
   std::vector<std::vector<Entry>> rows(static_cast<std::size_t>(to.centre.rows()));
   base::parallel_for(rows.size(), n_threads, [&](std::size_t target, int) {
-    const Vector3d x = row_of(to.centre, target);
-    auto& row = rows[target];
-    for (const auto cell : sources.find(x, n_candidates)) {
-      const auto u = Hexahedron(from, cell).find(x);
-      if (!u) continue;
-      const auto weights = Hexahedron::weights(*u);
-      for (std::size_t i = 0; i < 8; ++i) {
-        const auto point = static_cast<std::size_t>(from.corners[8 * cell + i]);
-        for (const auto source : around[point])
-          row.push_back(
-              {source, static_cast<float>(weights[static_cast<Eigen::Index>(i)] *
-                                          from.volume[static_cast<std::size_t>(source)] / volume[point])});
-      }
-      return;
+    const auto place = cells.find(row_of(to.centre, target));
+    if (!place) return;
+    const auto weights = Hexahedron::weights(place->u);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const auto point = static_cast<std::size_t>(from.corners[8 * place->cell + i]);
+      for (const auto source : around[point])
+        rows[target].push_back(
+            {source, static_cast<float>(weights[static_cast<Eigen::Index>(i)] *
+                                        from.volume[static_cast<std::size_t>(source)] / volume[point])});
     }
   });
   take_nearest(from, to, rows);

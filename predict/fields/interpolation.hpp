@@ -5,7 +5,8 @@
 //   conservative  every source cell is split into k^3 parts (by its trilinear map; k grows with the number
 //                 of targets), and each part belongs to the target that it lies in: weights are volumes,
 //                 values are means over what of the reduced mesh lies in a target. Exact where one mesh
-//                 refines the other.
+//                 refines the other. Of targets without faces the one with the nearest centre takes a part,
+//                 and those whose centres lie outside the reduced mesh take none.
 //   trilinear     values at the corners of the source's hexahedra (means of the cells around, by volume),
 //                 taken trilinearly at the target's centre.
 //

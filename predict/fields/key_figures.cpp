@@ -20,9 +20,8 @@ KeyFigures::KeyFigures(const model::Predictor& predictor, const model::Extent& e
   }
 }
 
-std::vector<double> KeyFigures::of(const field::CaseInputs& inputs, std::span<const float> values) const {
-  std::vector<double> figures;
-  add_audit(inputs, values, figures);
+KeyFigures::Figures KeyFigures::of(const field::CaseInputs& inputs, std::span<const float> values) const {
+  auto figures = audited(inputs, values);
   const std::size_t n = predictor_.planes().size() * predictor_.n_columns();
   for (std::size_t i = 0; i < predictor_.fields().size(); ++i) {
     const auto own = values.subspan(i * n, n);
@@ -35,23 +34,24 @@ std::vector<double> KeyFigures::of(const field::CaseInputs& inputs, std::span<co
       lowest = std::min(lowest, value);
       highest = std::max(highest, value);
     }
-    figures.insert(figures.end(), {sum / volume, lowest, highest});
+    figures.values.insert(figures.values.end(), {sum / volume, lowest, highest});
   }
   return figures;
 }
 
-void KeyFigures::add_audit(const field::CaseInputs& inputs, std::span<const float> values,
-                           std::vector<double>& to) const {
-  to.assign(n_audit, unknown);
-  if (cells_.size() != mesh_.n_cells()) return;
+KeyFigures::Figures KeyFigures::audited(const field::CaseInputs& inputs,
+                                        std::span<const float> values) const {
+  if (cells_.size() != mesh_.n_cells()) return {std::vector(n_audit, unknown), {}};
+  const auto& info = predictor_.bundle().info();
   const auto audit = model::audit({.mesh = mesh_,
-                                   .schema = predictor_.bundle().info().schema,
+                                   .schema = info.schema,
                                    .inputs = inputs.values,
                                    .fields = predictor_.fields(),
                                    .values = values},
                                   settings_);
-  to = {audit.solids_kg.value_or(unknown), audit.gas_balance.value_or(unknown),
-        audit.pressure_drop.value_or(unknown), audit.solids_weight.value_or(unknown)};
+  return {{audit.solids_kg.value_or(unknown), audit.gas_balance.value_or(unknown),
+           audit.pressure_drop.value_or(unknown), audit.solids_weight.value_or(unknown)},
+          model::unusual_figures(audit, info.usual_audit)};
 }
 
 }  // namespace elrom::fields

@@ -23,14 +23,17 @@ class KeyFigures {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// Whether a figure is worth a curve: all but the fields' ends.
   [[nodiscard]] bool is_curve(std::size_t i) const { return i < n_audit || (i - n_audit) % n_of_field == 0; }
-  /// (names().size()); NaN: fields, inputs or the furnace do not tell. @param values of the predictor
-  [[nodiscard]] std::vector<double> of(const field::CaseInputs& inputs, std::span<const float> values) const;
+  struct Figures {
+    std::vector<double> values;        ///< (names().size()); NaN: fields, inputs or the furnace do not tell
+    std::vector<std::string> unusual;  ///< mass and pressure that training cases do not show, a sentence each
+  };
+  /// @param values of the predictor
+  [[nodiscard]] Figures of(const field::CaseInputs& inputs, std::span<const float> values) const;
 
  private:
   static constexpr std::size_t n_audit = 4, n_of_field = 3;
 
-  void add_audit(const field::CaseInputs& inputs, std::span<const float> values,
-                 std::vector<double>& to) const;
+  [[nodiscard]] Figures audited(const field::CaseInputs& inputs, std::span<const float> values) const;
 
   const model::Predictor& predictor_;
   const model::Cells& cells_;

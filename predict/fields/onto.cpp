@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/base/units.hpp"
 #include "elrom/io/csv.hpp"
 #include "elrom/io/hdf5.hpp"
 
@@ -18,26 +20,25 @@ namespace fs = std::filesystem;
 
 constexpr const char* fraction = "solid_volume_fraction";
 
-/// Column of the first heading that is one of `names`, with or without a unit in brackets; -1: none.
-int column_of(const io::CsvTable& table, const std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < table.headings.size(); ++i) {
-    const auto name = base::trim(table.headings[i].substr(0, table.headings[i].find('[')));
-    if (std::find(names.begin(), names.end(), name) != names.end()) return static_cast<int>(i);
-  }
-  return -1;
+/// Column of the first heading that is one of `names`; nothing: none.
+std::optional<std::size_t> column_of(const io::CsvTable& table, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < table.headings.size(); ++i)
+    if (std::ranges::find(names, base::split_unit(table.headings[i]).name) != names.end()) return i;
+  return std::nullopt;
 }
 
-std::vector<double> numbers_of(const io::CsvTable& table, int column) {
+/// In SI, by the unit in the heading, or in the cell, which wins. @param si unit of what has none
+std::vector<double> values_of(const io::CsvTable& table, std::size_t column, const std::string& si) {
+  const auto symbol = base::split_unit(table.headings[column]).symbol;
   std::vector<double> values;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    const auto value = base::to_double(table.rows[row][static_cast<std::size_t>(column)]);
-    if (!value || !std::isfinite(*value)) {
-      throw InputError({.what = "cell centres cannot be read",
-                        .where = table.place(row, static_cast<std::size_t>(column)),
-                        .found = "'" + table.rows[row][static_cast<std::size_t>(column)] + "'",
-                        .expected = "a finite number in m"});
+    auto given = table.quantity(row, column);
+    if (given.symbol.empty()) given.symbol = symbol.empty() ? si : symbol;
+    try {
+      values.push_back(base::to_si(given, si));
+    } catch (const InputError& error) {
+      throw InputError({.what = error.what(), .where = table.place(row, column)});
     }
-    values.push_back(*value);
   }
   return values;
 }
@@ -48,19 +49,20 @@ Places read_table(const fs::path& file) {
   places.centre.resize(static_cast<Eigen::Index>(table.rows.size()), 3);
   for (int d = 0; d < 3; ++d) {
     const std::string axis(1, "xyz"[d]);
-    const int column = column_of(table, {axis, axis + "-coordinate"});
-    if (column < 0) {
-      throw InputError({.what = "no column '" + axis + "'",
-                        .where = file.string(),
-                        .found = base::join(table.headings, ", "),
-                        .expected = "x, y, z (or x-coordinate, ...) in m: a cell's centre a line"});
+    const auto column = column_of(table, {axis, axis + "-coordinate"});
+    if (!column) {
+      throw InputError(
+          {.what = "no column '" + axis + "'",
+           .where = file.string(),
+           .found = base::join(table.headings, ", "),
+           .expected = "x, y, z (or x-coordinate, ...) in m, or x [mm], ...: a cell's centre a line"});
     }
-    const auto values = numbers_of(table, column);
+    const auto values = values_of(table, *column, "m");
     for (std::size_t i = 0; i < values.size(); ++i)
       places.centre(static_cast<Eigen::Index>(i), d) = values[i];
   }
-  if (const int column = column_of(table, {"volume", "cell-volume"}); column >= 0)
-    places.volume = numbers_of(table, column);
+  if (const auto column = column_of(table, {"volume", "cell-volume"}))
+    places.volume = values_of(table, *column, "m3");
   return places;
 }
 
@@ -89,6 +91,26 @@ Places read_places(const fs::path& file) {
   auto places = file.extension() == ".csv" ? read_table(file) : read_hdf5(file);
   if (places.centre.rows() == 0) throw InputError({.what = "no cell centres", .where = file.string()});
   return places;
+}
+
+std::string extent_text(const MatrixD& points) {
+  std::vector<std::string> sides;
+  for (Eigen::Index d = 0; d < 3; ++d)
+    sides.push_back(base::rounded(points.col(d).minCoeff()) + " to " +
+                    base::rounded(points.col(d).maxCoeff()));
+  return base::join(sides, ", ") + " m";
+}
+
+/// A mesh in millimetres, or of another furnace, would get a nearest cell's value everywhere.
+void expect_overlap(const Interpolator& interpolator, const Places& places, const field::Mesh& from,
+                    const fs::path& file) {
+  if (interpolator.n_outside() < interpolator.n_target()) return;
+  throw InputError(
+      {.what = "no cell lies in the reduced mesh",
+       .where = file.string(),
+       .found = "centres x, y, z at " + extent_text(places.centre),
+       .expected = extent_text(from.points),
+       .advice = "is it another furnace, or not in m? A table's headings may give a unit: x [mm]"});
 }
 
 /// Which phase a field is of: its mean is to be weighted by that phase's share.
@@ -137,6 +159,7 @@ Onto::Onto(const Arguments& arguments, const model::BundleReader& bundle, int n_
   const auto from = bundle.mesh({.n_threads = n_threads});
   source_volume_ = from.volume;
   interpolator_ = std::make_unique<Interpolator>(from, places_, options_.interpolation, n_threads);
+  expect_overlap(*interpolator_, places_, from, options_.mesh);
 }
 
 void Onto::read_case(const Arguments& arguments, const model::BundleReader& bundle) {

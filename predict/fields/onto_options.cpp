@@ -21,9 +21,6 @@ std::map<std::string, std::string> names_of(const std::vector<std::string>& text
     if (name.find_first_of(" \t") != std::string::npos)
       throw UsageError(
           {.what = "--names cannot be read", .found = "'" + name + "'", .expected = "a name without blanks"});
-    for (const auto& [field, other] : names)
-      if (other == name && field != base::trim(sides[0]))
-        throw UsageError({.what = "--names gives two fields one name", .found = "'" + name + "'"});
     names[base::trim(sides[0])] = name;
   }
   return names;

@@ -17,12 +17,14 @@ Coordinates coordinates_in(const model::BundleReader& bundle, const model::Exten
   return coordinates_of(bundle.mesh({.with_corners = false, .n_threads = n_threads}));
 }
 
-/// @throws UsageError for a name of no field
+/// @throws UsageError for a name of no field, and for two fields of one name
 std::map<std::string, std::string> names_of(const Arguments& arguments, const model::BundleReader& bundle) {
   const auto& known = bundle.info().fields;
   for (const auto& [name, renamed] : arguments.onto.names)
     if (std::ranges::find(known, name, &field::FieldInfo::name) == known.end())
       throw UsageError(field::unknown_field(known, name, "--names"));
+  if (arguments.writes(Format::ip))
+    expect_fluent_names_differ(field::keep_fields(known, arguments.fields), arguments.onto.names);
   return arguments.onto.names;
 }
 

@@ -184,7 +184,11 @@ void CaseRunner::predict(std::size_t i, Desk& desk, int n_threads) {
   });
   const auto prediction = compute(inputs, assessment, hdf, desk, n_threads);
   if (desk.physics.audit) result.unusual_audit = desk.physics.audit->unusual;
-  if (figures_) result.figures = figures_->of(inputs, desk.values);
+  if (figures_) {
+    auto figures = figures_->of(inputs, desk.values);
+    result.figures = std::move(figures.values);
+    result.unusual_audit = std::move(figures.unusual);
+  }
   desk.compute += lap.lap();
   std::string said;
   for (const auto format : arguments_.formats) {
@@ -211,6 +215,10 @@ void CaseRunner::finish() const {
                n_cases());
   if (!figures_) return;
   const Summary summary{opened_.predictor.bundle().info().schema, opened_.list, figures_->names(), results_};
+  if (const auto n = n_held_alone(summary); n > 0)
+    fmt::print(
+        stderr,
+        "  {} of them only since the sweep moved its inputs and held the others at the base's values\n", n);
   const auto put = [&](const std::filesystem::path& path, const char* what, const auto& make) {
     if (path.empty()) return;
     base::write_text(path, make());
@@ -252,7 +260,7 @@ int run(const Arguments& arguments) {
   const int n_threads = arguments.n_threads > 0 ? arguments.n_threads : base::available_threads();
   const double cached = arguments.timing ? cached_share(arguments.bundle) : 0;
   const auto opened = open(arguments, n_threads, timing);
-  if (!arguments.to_standard_output()) std::filesystem::create_directories(arguments.output);
+  Targets(arguments).prepare(arguments, opened.list.cases);
   CaseRunner runner(arguments, opened);
   const std::size_t n_cases = runner.n_cases();
   predict_all(runner, n_cases, n_threads, timing);

@@ -4,7 +4,6 @@
 
 #include "elrom/base/text.hpp"
 #include "elrom/io/csv.hpp"
-#include "user_unit.hpp"
 
 namespace elrom::fields {
 namespace {
@@ -24,23 +23,43 @@ struct Pair {
   }
 };
 
-std::vector<std::string> all_reasons(const CaseResult& result) {
+/// The sweep, and nothing else, made the audit unusual.
+bool is_held_alone(const Summary& summary, std::size_t k) {
+  const auto& base = summary.results[summary.list.origins[k].base];
+  return !summary.results[k].unusual_audit.empty() && base.unusual_audit.empty();
+}
+
+std::vector<std::string> all_reasons(const Summary& summary, std::size_t k) {
+  const auto& result = summary.results[k];
   auto reasons = result.unusual_audit;
   reasons.insert(reasons.begin(), result.reason);
+  if (is_held_alone(summary, k)) reasons.emplace_back("only since the other inputs were held");
   return reasons;
 }
 
+/// "24 other inputs at the values of load_064"; empty for a base.
+std::string held_text(const Summary& summary, std::size_t k) {
+  const auto& origin = summary.list.origins[k];
+  if (origin.base == k) return "";
+  return std::to_string(summary.schema.size() - origin.changed.size()) + " other inputs at the values of " +
+         summary.list.cases[origin.base].name;
+}
+
 }  // namespace
+
+std::size_t n_held_alone(const Summary& summary) {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < summary.list.cases.size(); ++k) n += is_held_alone(summary, k) ? 1 : 0;
+  return n;
+}
 
 std::string summary_table(const Summary& summary) {
   const auto& [schema, list, names, results] = summary;
   const bool with_bases = !list.swept.empty();
   std::vector<std::string> headings{"case", "base", "verdict", "distance", "reason"};
-  std::vector<const base::Unit*> units;
-  for (const auto i : list.swept) {
-    units.push_back(&user_unit(schema[i]));
-    headings.push_back(schema[i].name + " [" + units.back()->symbol + "]");
-  }
+  if (with_bases) headings.emplace_back("held");
+  for (const auto& swept : list.swept)
+    headings.push_back(schema[swept.input].name + " [" + swept.unit->symbol + "]");
   headings.insert(headings.end(), names.begin(), names.end());
   for (const auto& name : names)
     if (with_bases) headings.push_back("change of " + name);
@@ -50,9 +69,10 @@ std::string summary_table(const Summary& summary) {
     const Pair pair{results[k], results[i_base]};
     std::vector<std::string> row{io::csv_cell(list.cases[k].name), io::csv_cell(list.cases[i_base].name),
                                  std::string(model::name_of(pair.own.verdict)), cell(pair.own.distance),
-                                 io::csv_cell(base::join(all_reasons(pair.own), "; "))};
-    for (std::size_t s = 0; s < list.swept.size(); ++s)
-      row.push_back(cell(units[s]->from_si(list.cases[k].values[list.swept[s]])));
+                                 io::csv_cell(base::join(all_reasons(summary, k), "; "))};
+    if (with_bases) row.push_back(io::csv_cell(held_text(summary, k)));
+    for (const auto& swept : list.swept)
+      row.push_back(cell(swept.unit->from_si(list.cases[k].values[swept.input])));
     for (std::size_t i = 0; i < names.size(); ++i) row.push_back(pair.figure(i));
     for (std::size_t i = 0; with_bases && i < names.size(); ++i) row.push_back(pair.change(i));
     text += base::join(row, ",") + "\n";

@@ -16,7 +16,7 @@ struct CaseResult {
   std::string reason;
   double distance = 0;
   std::vector<double> figures;             ///< empty: not predicted (--strict)
-  std::vector<std::string> unusual_audit;  ///< with --audit: what training cases do not show
+  std::vector<std::string> unusual_audit;  ///< where it was audited: what training cases do not show
 };
 
 /// What the writers below share; everything is borrowed.
@@ -27,8 +27,13 @@ struct Summary {
   std::span<const CaseResult> results;  //!< (list.cases)
 };
 
-/// CSV: case, base, verdict, distance, reason (with what is unusual of an audit), what was swept in its
-/// user's unit, figures, and with bases the change of each figure against the base's. Empty: not known.
+/// Cases whose audit is unusual where that of their base is not: all that differs is what a sweep moved
+/// while the other inputs were held.
+[[nodiscard]] std::size_t n_held_alone(const Summary& summary);
+
+/// CSV: case, base, verdict, distance, reason (with what is unusual of an audit), held (of a sweep: whose
+/// values the other inputs have), what was swept in the unit of the sweep, figures, and with bases the
+/// change of each figure against the base's. Empty: not known.
 [[nodiscard]] std::string summary_table(const Summary& summary);
 
 /// A page for a browser, without a network: one chart a figure of `curves` and a swept input, a line for each

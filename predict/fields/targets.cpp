@@ -1,6 +1,8 @@
 #include "targets.hpp"
 
 #include <cstdio>
+#include <map>
+#include <set>
 
 #include "elrom/base/error.hpp"
 
@@ -33,6 +35,22 @@ Targets::Targets(const Arguments& arguments)
   std::error_code not_there;
   in_case_ = !arguments.onto.mesh.empty() &&
              std::filesystem::equivalent(folder_, arguments.onto.mesh, not_there) && !not_there;
+}
+
+void Targets::prepare(const Arguments& arguments, const std::vector<field::CaseInputs>& cases) const {
+  for (const auto& file : {arguments.summary, arguments.page})
+    if (!file.empty()) base::expect_writable(file);
+  if (arguments.to_standard_output()) return;
+  std::filesystem::create_directories(folder_);
+  std::map<std::filesystem::path, std::set<std::string, std::less<>>> names;  // by folder
+  for (const auto& inputs : cases) {
+    for (const auto format : arguments.formats) {
+      const auto target = path(format, inputs);
+      names[target.parent_path()].insert(target.filename().string());
+    }
+  }
+  for (const auto& [folder, targets] : names)
+    base::remove_dead_remains(folder, [&](std::string_view name) { return targets.contains(name); });
 }
 
 std::filesystem::path Targets::path(Format format, const field::CaseInputs& inputs) const {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/field/boundary_conditions.hpp"
@@ -15,6 +16,9 @@ namespace elrom::fields {
 class Targets {
  public:
   explicit Targets(const Arguments& arguments);
+  /// Makes the folders, clears away what killed runs left half-written of these cases, and sees that summary
+  /// and page can be written at the end. @throws SystemError
+  void prepare(const Arguments& arguments, const std::vector<field::CaseInputs>& cases) const;
   /// Whether the output folder is the OpenFOAM case that is to be started.
   [[nodiscard]] bool in_case() const { return in_case_; }
   [[nodiscard]] std::filesystem::path path(Format format, const field::CaseInputs& inputs) const;

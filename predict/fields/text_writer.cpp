@@ -88,6 +88,18 @@ void add_comment(const model::PredictionFrame& frame, const model::Prediction& p
 
 }  // namespace
 
+void expect_fluent_names_differ(const std::vector<field::FieldInfo>& fields,
+                                const std::map<std::string, std::string>& chosen) {
+  std::map<std::string, std::string> taken;  // field by name
+  for (const auto& info : fields) {
+    const auto [other, is_new] = taken.emplace(fluent_name(info.name, chosen), info.name);
+    if (!is_new)
+      throw UsageError({.what = "--names gives two fields one name",
+                        .found = "'" + other->first + "' for " + other->second + " and " + info.name,
+                        .advice = "give one of them another name"});
+  }
+}
+
 Coordinates coordinates_of(const model::PlaneAverage& average) { return {{"z"}, average.heights()}; }
 Coordinates coordinates_of(const model::CellGeometry& geometry) { return {{"x", "y", "z"}, geometry.centre}; }
 Coordinates coordinates_of(const field::Mesh& mesh) {

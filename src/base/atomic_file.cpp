@@ -1,16 +1,20 @@
 #include "elrom/base/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
 
 namespace elrom::base {
 namespace {
@@ -31,14 +35,54 @@ void sync(const std::filesystem::path& path, int flags) {
   if (result != 0) throw system_error("cannot sync", path);
 }
 
+/// What the name of a temporary tells.
+struct Temporary {
+  std::string target;
+  pid_t process;
+};
+
+bool is_digits(const std::string& text) {
+  return !text.empty() && text.size() < 10 &&
+         std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Of ".<target>.<process id>.<n>.tmp"; nothing for any other name.
+std::optional<Temporary> temporary_of(const std::string& name) {
+  auto parts = split(name, '.');
+  const auto n = parts.size();
+  const bool is_ours = n >= 5 && parts[0].empty() && parts[n - 1] == "tmp" && is_digits(parts[n - 2]) &&
+                       is_digits(parts[n - 3]);
+  if (!is_ours) return std::nullopt;
+  const pid_t process = std::stoi(parts[n - 3]);
+  return Temporary{join({parts.begin() + 1, parts.end() - 3}, "."), process};
+}
+
+bool lives(pid_t process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
+
+/// Removes temporaries, files or folders, that `is_meant` says.
+template <class IsMeant>
+void remove_temporaries(const std::filesystem::path& folder, const IsMeant& is_meant) {
+  std::error_code fault;
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, fault)) {
+    const auto temporary = temporary_of(entry.path().filename().string());
+    if (temporary && is_meant(*temporary)) found.push_back(entry.path());
+  }
+  for (const auto& path : found) std::filesystem::remove_all(path, fault);
+}
+
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path target, Sync sync) : target_(std::move(target)), sync_(sync) {
+std::filesystem::path temporary_beside(const std::filesystem::path& target) {
   static std::atomic<int> counter{0};
+  return folder_of(target) / ("." + target.filename().string() + "." + std::to_string(::getpid()) + "." +
+                              std::to_string(counter++) + ".tmp");
+}
+
+AtomicFile::AtomicFile(std::filesystem::path target, Sync sync) : target_(std::move(target)), sync_(sync) {
   const auto folder = folder_of(target_);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) throw system_error("cannot write into folder", folder);
-  temporary_ = folder / ("." + target_.filename().string() + "." + std::to_string(::getpid()) + "." +
-                         std::to_string(counter++) + ".tmp");
+  temporary_ = temporary_beside(target_);
 }
 
 AtomicFile::~AtomicFile() {
@@ -67,6 +111,18 @@ void write_text(const std::filesystem::path& target, std::string_view text) {
   stream.close();
   if (!stream) throw system_error("cannot write", target);
   file.commit();
+}
+
+void expect_writable(const std::filesystem::path& target) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder_of(target), fault);
+  if (fault)
+    throw SystemError(
+        {.what = "cannot make folder", .where = folder_of(target).string(), .found = fault.message()});
+  if (std::filesystem::is_directory(target))
+    throw SystemError(
+        {.what = "cannot write file", .where = target.string(), .found = "a folder of that name"});
+  const AtomicFile probe(target, Sync::none);
 }
 
 std::string read_text(const std::filesystem::path& path) {
@@ -99,12 +155,14 @@ std::filesystem::path lock_beside(const std::filesystem::path& file) {
 }
 
 void remove_remains(const std::filesystem::path& target) noexcept {
-  const auto prefix = "." + target.filename().string() + ".";
-  std::error_code fault;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_of(target), fault)) {
-    const auto name = entry.path().filename().string();
-    if (name.starts_with(prefix) && name.ends_with(".tmp")) std::filesystem::remove(entry.path(), fault);
-  }
+  const auto name = target.filename().string();
+  remove_temporaries(folder_of(target), [&](const Temporary& one) { return one.target == name; });
+}
+
+void remove_dead_remains(const std::filesystem::path& folder,
+                         const std::function<bool(std::string_view)>& is_meant) {
+  remove_temporaries(folder,
+                     [&](const Temporary& one) { return is_meant(one.target) && !lives(one.process); });
 }
 
 }  // namespace elrom::base

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "elrom/base/text.hpp"
 
@@ -89,6 +90,26 @@ class ConsoleLog final : public Log {
   std::map<std::string, Task> tasks_;
 };
 
+class WarnOnce final : public Log {
+ public:
+  explicit WarnOnce(Log& log) : log_(log) {}
+  void message(Level level, std::string_view text) override {
+    if (level == Level::warning && !is_new(text)) return;
+    log_.message(level, text);
+  }
+  void progress(const Progress& progress) override { log_.progress(progress); }
+
+ private:
+  bool is_new(std::string_view text) {
+    const std::scoped_lock lock(mutex_);
+    return said_.emplace(text).second;
+  }
+
+  Log& log_;
+  std::mutex mutex_;
+  std::set<std::string> said_;
+};
+
 }  // namespace
 
 Log& silent_log() {
@@ -97,5 +118,6 @@ Log& silent_log() {
 }
 
 std::unique_ptr<Log> make_console_log(Level lowest) { return std::make_unique<ConsoleLog>(lowest); }
+std::unique_ptr<Log> warn_once(Log& log) { return std::make_unique<WarnOnce>(log); }
 
 }  // namespace elrom

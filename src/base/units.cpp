@@ -61,6 +61,13 @@ const std::vector<Unit>& table() {
   return units;
 }
 
+std::string in_lower_case(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
+}
+
 /// Without what is not common.
 const Unit* common(std::string_view symbol) {
   const auto& units = table();
@@ -87,6 +94,33 @@ const Unit* further_unit(std::string_view symbol) {
   if (found != units.end()) return &found->second;
   auto made = source ? source(symbol) : std::nullopt;
   return made ? &units.emplace(symbol, *std::move(made)).first->second : nullptr;
+}
+
+/// With its words as the table has them: "kg/sec" is "kg/s", "KG/S" is "kg/s" in other letters.
+std::string in_table_words(std::string_view symbol) {
+  static const std::map<std::string, std::string, std::less<>> words{
+      {"sec", "s"},   {"second", "s"},     {"seconds", "s"},   {"hr", "h"},       {"hour", "h"},
+      {"hours", "h"}, {"minute", "min"},   {"minutes", "min"}, {"tph", "t/h"},    {"ton", "t"},
+      {"tonne", "t"}, {"kgps", "kg/s"},    {"micron", "um"},   {"microns", "um"}, {"metre", "m"},
+      {"meter", "m"}, {"celsius", "degc"}, {"kelvin", "k"},    {"percent", "%"},  {"cbm", "m3"},
+      {"m^3", "m3"}};
+  std::vector<std::string> parts;
+  for (const auto& part : split(in_lower_case(symbol), '/')) {
+    const auto found = words.find(trim(part));
+    parts.push_back(found == words.end() ? trim(part) : found->second);
+  }
+  return join(parts, "/");
+}
+
+/// The unit that an unknown symbol was meant for. Nothing that is only near: "barg" is no bar.
+std::string advice_for(std::string_view symbol) {
+  const auto meant = in_table_words(symbol);
+  std::vector<std::string> symbols;
+  for (const auto& u : table()) {
+    if (in_lower_case(u.symbol) == meant) return "did you mean '" + u.symbol + "'?";
+    symbols.push_back(u.symbol);
+  }
+  return "known are: " + join(symbols, ", ");
 }
 
 /// Versions of a source may round differently.
@@ -130,10 +164,7 @@ const Unit& unit(std::string_view symbol) {
   }
   if (const auto* known = common(symbol)) return *known;
   if (const auto* known = further_unit(symbol)) return *known;
-  std::vector<std::string> symbols;
-  for (const auto& u : table()) symbols.push_back(u.symbol);
-  throw InputError(
-      {.what = "unknown unit '" + std::string(symbol) + "'", .advice = "known are: " + join(symbols, ", ")});
+  throw InputError({.what = "unknown unit '" + std::string(symbol) + "'", .advice = advice_for(symbol)});
 }
 
 std::vector<std::string> units_of(std::string_view si) {
@@ -176,7 +207,9 @@ Quantity quantity_in(std::string_view text) {
                     .expected = "a number, with or without a unit"});
 }
 
-double si_of(const Quantity& given, std::string_view si) {
+}  // namespace
+
+double to_si(const Quantity& given, std::string_view si) {
   if (given.symbol.empty()) return given.value;
   const auto& known = unit(given.symbol);
   if (known.si != si)
@@ -186,9 +219,7 @@ double si_of(const Quantity& given, std::string_view si) {
   return known.to_si(given.value);
 }
 
-}  // namespace
-
-double quantity(std::string_view text, std::string_view si) { return si_of(quantity_in(text), si); }
+double quantity(std::string_view text, std::string_view si) { return to_si(quantity_in(text), si); }
 
 Interval interval(std::string_view text, std::string_view si) {
   const auto sides = split(text, ':');
@@ -197,7 +228,7 @@ Interval interval(std::string_view text, std::string_view si) {
   auto low = quantity_in(sides.front());
   const auto high = quantity_in(sides.back());
   if (low.symbol.empty()) low.symbol = high.symbol;
-  return {si_of(low, si), si_of(high, si)};
+  return {to_si(low, si), to_si(high, si)};
 }
 
 }  // namespace elrom::base

@@ -9,6 +9,17 @@
 #include "elrom/io/csv.hpp"
 
 namespace elrom::field {
+namespace {
+
+/// The first of a long list.
+std::string listed(std::vector<std::string> names) {
+  constexpr std::size_t most = 10;
+  const bool more = names.size() > most;
+  if (more) names.resize(most);
+  return base::join(names, ", ") + (more ? ", ..." : "");
+}
+
+}  // namespace
 
 std::vector<std::string> InputSchema::names() const {
   std::vector<std::string> names;
@@ -20,8 +31,11 @@ std::size_t InputSchema::index_of(std::string_view name) const {
   const auto found =
       std::find_if(inputs_.begin(), inputs_.end(), [&](const InputInfo& i) { return i.name == name; });
   if (found != inputs_.end()) return static_cast<std::size_t>(found - inputs_.begin());
-  throw InputError({.what = "unknown boundary condition '" + std::string(name) + "'",
-                    .advice = base::name_advice(name, names())});
+  throw InputError(
+      {.what = "unknown boundary condition '" + std::string(name) + "'",
+       .advice = name == "load"
+                     ? "a load is a case's label, and no model goes by it; known are: " + listed(names())
+                     : base::name_advice(name, names())});
 }
 
 InputSchema read_schema(const std::filesystem::path& cases_csv) {

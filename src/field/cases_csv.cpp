@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,20 +24,6 @@ std::size_t column_of(const io::CsvTable& table, std::string_view name) {
   return found;
 }
 
-/// A number as the table writes it: where commas do not separate, one is a decimal comma.
-base::Quantity quantity_at(const io::CsvTable& table, std::size_t row, std::size_t column) {
-  auto cell = table.rows[row][column];
-  const bool comma = std::ranges::count(cell, ',') == 1 && cell.find('.') == std::string::npos;
-  if (comma && table.separator != ',') std::ranges::replace(cell, ',', '.');
-  const bool has_comma = cell.find(',') != std::string::npos;
-  auto found = base::split_quantity(cell);
-  if (found && !has_comma) return *std::move(found);
-  throw InputError({.what = "no finite number",
-                    .where = table.place(row, column),
-                    .found = "'" + cell.substr(0, 40) + "'",
-                    .advice = has_comma ? "write numbers with a decimal point" : ""});
-}
-
 }  // namespace
 
 std::vector<CaseInputs> read_cases_csv(const std::filesystem::path& path, const InputSchema& schema) {
@@ -51,14 +36,14 @@ std::vector<CaseInputs> read_cases_csv(const std::filesystem::path& path, const 
     CaseInputs one{.name = table.rows[row][name_column], .load = std::nan("")};
     check_case_name(one.name, table.place(row, name_column));
     if (load_column != nowhere && !table.rows[row][load_column].empty()) {
-      const auto given = quantity_at(table, row, load_column);
+      const auto given = table.quantity(row, load_column);
       const auto symbol =
           given.symbol.empty() ? base::split_unit(table.headings[load_column]).symbol : given.symbol;
       one.load = checked_load(given.value, symbol, table.place(row, load_column));
     }
     for (std::size_t i = 0; i < schema.size(); ++i) {
       const auto column = columns.position[i];
-      const auto given = quantity_at(table, row, column);
+      const auto given = table.quantity(row, column);
       one.values.push_back(to_si(given.value, given.symbol.empty() ? columns.symbol[i] : given.symbol,
                                  schema[i], table.place(row, column)));
     }

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <stdio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -213,7 +212,7 @@ FoamCase read_foam_case(const fs::path& directory) {
 void write_time_folder(const FoamCase& of, const fs::path& target, const StartFields& start,
                        const std::vector<Parcel>& parcels, double solid_density, const std::string& note) {
   const auto time = target.filename().string();
-  const Remains unfinished{target.parent_path() / ("." + time + "." + std::to_string(::getpid()) + ".tmp")};
+  const Remains unfinished{base::temporary_beside(target)};
   TimeFolder folder(of, unfinished.folder, time, note);
   folder.write(of.with_gas("U"), "vector",
                list(start.gas_velocity_x, start.gas_velocity_y, start.gas_velocity_z));

@@ -5,6 +5,7 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "text_encoding.hpp"
 
 namespace elrom::io {
 
@@ -19,6 +20,7 @@ class Parser {
 
   [[nodiscard]] bool at_end() const { return at_ >= text_.size(); }
   [[nodiscard]] std::size_t line() const { return line_; }
+  [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
 
   // The cells of the next record, or an empty list for a line to skip.
   std::vector<std::string> record() {
@@ -101,12 +103,26 @@ std::string_view heading_line(std::string_view text) {
   return text;
 }
 
+constexpr std::string_view separators = ",;\t";
+
 /// Spreadsheets of some countries separate by semicolons, some programs by tabs.
 char separator_of(std::string_view text) {
   const auto heading = heading_line(text);
-  const auto count = [&](char c) { return std::count(heading.begin(), heading.end(), c); };
-  if (count(',') > 0) return ',';
-  return count(';') >= count('\t') && count(';') > 0 ? ';' : count('\t') > 0 ? '\t' : ',';
+  return *std::ranges::max_element(separators, {}, [&](char c) { return std::ranges::count(heading, c); });
+}
+
+std::string name_of_separator(char c) { return c == ',' ? "commas" : c == ';' ? "semicolons" : "tabs"; }
+
+/// Why a line may have another number of cells than there are headings.
+std::string advice_on_cells(std::string_view line, std::size_t n_cells, std::size_t n_headings,
+                            char separator) {
+  for (const char other : separators)
+    if (other != separator && std::ranges::count(line, other) + 1 == static_cast<std::ptrdiff_t>(n_headings))
+      return "the headings are separated by " + name_of_separator(separator) + " and this line by " +
+             name_of_separator(other) + ": use one of them throughout";
+  if (separator == ',' && n_cells > n_headings)
+    return "commas separate here: write numbers with a decimal point, or separate by semicolons";
+  return "";
 }
 
 /// Excel's own first line, "sep=;", says what separates. @return whether it was there; it is taken away
@@ -127,15 +143,31 @@ std::string CsvTable::place(std::size_t row, std::size_t column) const {
   return where + ":" + std::to_string(lines[row]) + ", column '" + headings[column] + "'";
 }
 
+base::Quantity CsvTable::quantity(std::size_t row, std::size_t column) const {
+  auto cell = rows[row][column];
+  const bool comma = std::ranges::count(cell, ',') == 1 && cell.find('.') == std::string::npos;
+  if (comma && separator != ',') std::ranges::replace(cell, ',', '.');
+  const bool has_comma = cell.find(',') != std::string::npos;
+  auto found = base::split_quantity(cell);
+  if (found && !has_comma) return *std::move(found);
+  throw InputError({.what = "no finite number",
+                    .where = place(row, column),
+                    .found = "'" + cell.substr(0, 40) + "'",
+                    .advice = has_comma ? "write numbers with a decimal point" : ""});
+}
+
 CsvTable parse_csv(std::string_view text, std::string where) {
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   if (text.find('\0') != std::string_view::npos)
-    throw InputError({.what = "not a text file", .where = where});
+    throw InputError({.what = "not a text file",
+                      .where = where,
+                      .advice = "a spreadsheet saves its table as 'CSV UTF-8'"});
   CsvTable table{.where = where};
   if (!take_separator_line(text, table.separator)) table.separator = separator_of(text);
   Parser parser(text, table.separator, where);
   while (!parser.at_end()) {
     const auto line = parser.line();
+    const auto rest = parser.rest();
     auto record = parser.record();
     if (record.empty()) continue;
     if (table.headings.empty()) {
@@ -146,7 +178,9 @@ CsvTable parse_csv(std::string_view text, std::string where) {
       throw InputError({.what = "wrong number of cells",
                         .where = where + ":" + std::to_string(line),
                         .found = cells(record.size()),
-                        .expected = std::to_string(table.headings.size())});
+                        .expected = std::to_string(table.headings.size()),
+                        .advice = advice_on_cells(rest.substr(0, rest.find_first_of("\r\n")), record.size(),
+                                                  table.headings.size(), table.separator)});
     }
     const bool blank = std::ranges::all_of(record, [](const std::string& cell) { return cell.empty(); });
     if (blank && record.size() > 1) continue;  // a row that a spreadsheet left behind
@@ -171,9 +205,7 @@ std::string read_small_text(const std::filesystem::path& path) {
                       .found = std::to_string(size >> 20) + " MB",
                       .expected = "at most " + std::to_string(most_text_bytes >> 20) + " MB"});
   }
-  auto text = base::read_text(path);
-  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
-  return text;
+  return in_utf8(base::read_text(path));
 }
 
 std::string csv_cell(std::string_view cell) {

@@ -9,14 +9,29 @@
 #include "elrom/base/error.hpp"
 
 namespace elrom::io {
+namespace {
+
+/// zlib passes files that are not gzip through unchanged.
+std::unique_ptr<gzFile_s, int (*)(gzFile)> open(const std::filesystem::path& path) {
+  return {gzopen(path.c_str(), "rb"), gzclose};
+}
+
+}  // namespace
+
+std::string begin_of_text_file(const std::filesystem::path& path, std::size_t most_bytes) {
+  const auto file = open(path);
+  std::string text(most_bytes, '\0');
+  const int got = file ? gzread(file.get(), text.data(), static_cast<unsigned>(most_bytes)) : 0;
+  text.resize(static_cast<std::size_t>(std::max(0, got)));
+  return text;
+}
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t most_bytes) {
   if (std::filesystem::is_directory(path)) {
     throw InputError(
         {.what = "cannot read text", .where = path.string(), .found = "a directory", .expected = "a file"});
   }
-  // zlib passes files that are not gzip through unchanged.
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  const auto file = open(path);
   if (!file) throw InputError({.what = "cannot open file", .where = path.string()});
   std::vector<char> block(std::size_t{1} << 16);
   gzbuffer(file.get(), static_cast<unsigned>(block.size()));

@@ -1,6 +1,7 @@
 #include "elrom/base/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -57,6 +58,45 @@ TEST_F(AtomicFileTest, TwoWritersOfOneTargetDoNotShareATemporary) {
 
 TEST_F(AtomicFileTest, MissingFolderIsToldAtOnce) {
   EXPECT_THROW(AtomicFile(folder_ / "missing" / "a.txt"), SystemError);
+}
+
+TEST_F(AtomicFileTest, WhatCannotBeWrittenIsKnownBeforeTheWork) {
+  EXPECT_NO_THROW(expect_writable(folder_ / "made/on the way/a.txt"));
+  EXPECT_EQ(n_files(), 1) << "the folder";
+  EXPECT_TRUE(fs::is_empty(folder_ / "made/on the way"));
+
+  write_text(folder_ / "file", "x");
+  EXPECT_THROW(expect_writable(folder_ / "file/a.txt"), SystemError);
+  EXPECT_THROW(expect_writable(folder_ / "made"), SystemError);
+}
+
+/// A process id that was somebody's and is nobody's now.
+pid_t dead_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST_F(AtomicFileTest, RemainsOfTheDeadAreRemovedAndThoseOfTheLivingStay) {
+  const auto named = [&](const std::string& target, pid_t process) {
+    return folder_ / ("." + target + "." + std::to_string(process) + ".0.tmp");
+  };
+  const auto dead = dead_process();
+  write_text(named("12.5", dead), "half");
+  fs::create_directories(named("0", dead) / "lagrangian");
+  write_text(named("0", dead) / "lagrangian" / "U", "half");
+  write_text(named("other", dead), "half");
+  write_text(named("12.5", ::getpid()), "half");
+  write_text(folder_ / ".12.5.tmp", "the user's");
+
+  remove_dead_remains(folder_, [](std::string_view target) { return target == "12.5" || target == "0"; });
+
+  EXPECT_FALSE(fs::exists(named("12.5", dead)));
+  EXPECT_FALSE(fs::exists(named("0", dead)));
+  EXPECT_TRUE(fs::exists(named("other", dead)));
+  EXPECT_TRUE(fs::exists(named("12.5", ::getpid())));
+  EXPECT_TRUE(fs::exists(folder_ / ".12.5.tmp"));
 }
 
 TEST_F(AtomicFileTest, ReadingADirectoryIsAnInputError) {

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "support/recording_log.hpp"
+
 namespace elrom {
 namespace {
 
@@ -28,6 +30,18 @@ TEST(ConsoleLog, TellsProgressAndMessages) {
 
 TEST(ConsoleLog, QuietOneTellsWarningsAlone) {
   EXPECT_EQ(printed_at(Level::warning), "warning: look here\n");
+}
+
+TEST(WarnOnce, SaysAWarningOnceAndAllElseAsOften) {
+  test::RecordingLog log;
+  const auto once = warn_once(log);
+  for (int i = 0; i < 2; ++i) {
+    once->warning("look here");
+    once->info("an aside");
+  }
+  once->warning("and there");
+
+  EXPECT_EQ(log.text(), "look here\nan aside\nan aside\nand there\n");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "elrom/base/error.hpp"
 #include "support/throws.hpp"
 
@@ -23,6 +25,18 @@ TEST(Units, UnknownSymbolListsTheKnownOnes) {
     EXPECT_THAT(error.what(), testing::HasSubstr("unknown unit 'furlong'"));
     EXPECT_THAT(error.what(), testing::HasSubstr("kg/s"));
   }
+}
+
+TEST(Units, AnotherSpellingIsAnsweredWithTheOneThatIsMeant) {
+  for (const auto& [written, meant] : std::map<std::string, std::string>{{"kg/sec", "kg/s"},
+                                                                         {"KG/S", "kg/s"},
+                                                                         {"tph", "t/h"},
+                                                                         {"T/hr", "t/h"},
+                                                                         {"micron", "um"},
+                                                                         {"PA", "Pa"},
+                                                                         {"Celsius", "degC"}})
+    EXPECT_ERROR(InputError, "unknown unit '" + written + "'; did you mean '" + meant + "'?", unit(written));
+  EXPECT_ERROR(InputError, "unknown unit 'barg'; known are: ", unit("barg"));
 }
 
 TEST(Units, HeadingSplitsIntoNameAndUnit) {

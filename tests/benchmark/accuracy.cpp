@@ -26,11 +26,9 @@ using Names = std::vector<std::string>;
 
 constexpr double least_gain = 0.08, widest_gap = 0.05;  // what a study promises; a gap in coverage
 
-struct Options : benchmark::Arguments {
-  std::string effort = "quick";
-  Names held_out{"load_*"}, repeats{"rep*"}, settings;
+struct Options : benchmark::StudyArguments {
+  Names held_out{"load_*"}, repeats{"rep*"};
   int sets = 0;
-  std::filesystem::path folder;
 };
 
 struct Trial {
@@ -60,25 +58,13 @@ std::vector<Trial> trials_of(const Options& options) {
   return trials;
 }
 
-/// The report of one trained trial. Folders that are kept go on from where they were.
+/// The report of one trained trial.
 Json report_of(const Trial& trial, const Options& options, const std::filesystem::path& folder) {
   Names patterns;
   for (const auto* names : {&trial.held_out, &options.repeats})
     for (const auto& name : *names) patterns.push_back("\"" + name + "\"");
-  const auto study = folder / base::join(base::split(trial.name, ' '), "_");
-  Names arguments{"run",       study.string(),
-                  "--store",   options.store.string(),
-                  "--threads", std::to_string(options.threads),
-                  "--effort",  options.effort,
-                  "-q",        "--set=split.held_out=[" + base::join(patterns, ", ") + "]"};
-  for (const auto& setting : options.settings) arguments.push_back("--set=" + setting);
-  std::filesystem::create_directories(study);
-  benchmark::run_program(benchmark::sibling("elrom-train"), arguments);
-  const auto file = study / "accuracy.json";
-  benchmark::run_program(
-      benchmark::sibling("elrom-report"),
-      {"accuracy", study.string(), "--store", options.store.string(), "--quiet", "--json", file.string()});
-  return Json::parse(base::read_text(file));
+  return benchmark::trained_report(options, folder / base::join(base::split(trial.name, ' '), "_"),
+                                   options.store, {"split.held_out=[" + base::join(patterns, ", ") + "]"});
 }
 
 /// Sums of squares of one method in one field, which trials can be added in.
@@ -229,11 +215,8 @@ int main(int argc, char** argv) {
     benchmark::CommandLine line(
         "Whether ELROM is at or below every simple peer, and its intervals cover what they promise, on the "
         "held-out cases and on other sets of cases in their place (NRMSE; 1 = no skill).");
-    options.add_to(line, "snapshot store", benchmark::CommandLine::Need::required);
+    options.add_to(line);
     line.add("--sets", options.sets, "further trials, each holding back a share of the training cases");
-    line.add("--effort", options.effort, "of the studies");
-    line.add_repeated("--set", options.settings, "key=value: a setting of the studies; repeatable");
-    line.add("--folder", options.folder, "keep the studies here, and go on from those that are there");
     line.add_list("--held-out", options.held_out, "names or patterns of the held-out cases");
     if (const auto status = line.parse(argc, argv)) return *status;
     options.store = std::filesystem::absolute(options.store);

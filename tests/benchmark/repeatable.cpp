@@ -23,10 +23,7 @@ using Names = std::vector<std::string>;
 
 constexpr double perturbation = 1e-7, widest_spread = 0.005;
 
-struct Options : benchmark::Arguments {
-  std::string effort = "quick";
-  Names settings;
-  std::filesystem::path folder;
+struct Options : benchmark::StudyArguments {
   int copies = 2;
 };
 
@@ -63,22 +60,12 @@ void write_copy(const field::SnapshotStore& store, int copy, const std::filesyst
   writer.commit();
 }
 
-/// The report of one copy. Folders that are kept go on from where they were.
+/// The report of one copy.
 Json report_of(const field::SnapshotStore& store, int copy, const Options& options,
                const std::filesystem::path& folder) {
-  const auto study = folder / fmt::format("copy_{}", copy), cases = folder / fmt::format("copy_{}.h5", copy),
-             report = study / "accuracy.json";
+  const auto cases = folder / fmt::format("copy_{}.h5", copy);
   if (!std::filesystem::exists(cases)) write_copy(store, copy, cases);
-  std::filesystem::create_directories(study);
-  Names arguments{"run",          study.string(), "--store",
-                  cases.string(), "--threads",    std::to_string(options.threads),
-                  "--effort",     options.effort, "-q"};
-  for (const auto& setting : options.settings) arguments.push_back("--set=" + setting);
-  benchmark::run_program(benchmark::sibling("elrom-train"), arguments);
-  benchmark::run_program(
-      benchmark::sibling("elrom-report"),
-      {"accuracy", study.string(), "--store", cases.string(), "--quiet", "--json", report.string()});
-  return Json::parse(base::read_text(report));
+  return benchmark::trained_report(options, folder / fmt::format("copy_{}", copy), cases);
 }
 
 Json compare(const std::vector<Json>& reports) {
@@ -126,11 +113,8 @@ int main(int argc, char** argv) {
     benchmark::CommandLine line(
         "Whether a change of the data in the last bit changes what a study makes of them (NRMSE of each field "
         "on the held-out cases).");
-    options.add_to(line, "snapshot store", benchmark::CommandLine::Need::required);
+    options.add_to(line);
     line.add("--copies", options.copies, "copies of the data, each perturbed anew");
-    line.add("--effort", options.effort, "of the studies");
-    line.add_repeated("--set", options.settings, "key=value: a setting of the studies; repeatable");
-    line.add("--folder", options.folder, "keep the studies here, and go on from those that are there");
     if (const auto status = line.parse(argc, argv)) return *status;
     options.store = std::filesystem::absolute(options.store);
     if (options.small) {

@@ -39,7 +39,7 @@ TEST_F(CaseListTest, PatternsChooseAndSettingsChange) {
   const auto cases = case_list(arguments_, schema_).cases;
 
   ASSERT_EQ(cases.size(), 2U);
-  EXPECT_EQ(cases[1].name, "load_2+air=36+fuel=1");
+  EXPECT_EQ(cases[1].name, "load_2+air=36+fuel=3600kg_h") << "36 in the unit that numbers alone are in";
   EXPECT_THAT(cases[1].values, ElementsAre(::testing::DoubleEq(10), ::testing::DoubleEq(1)));
 }
 
@@ -102,8 +102,9 @@ TEST_F(CaseListTest, ASweepFollowsItsBaseOneInputAtATime) {
 
   const auto list = case_list(arguments_, schema_);
 
-  EXPECT_THAT(names_of(list), ElementsAre("load_1", "load_1+air=36", "load_1+air=37.8", "load_1+air=39.6",
-                                          "load_1+fuel=2", "load_1+fuel=1"));
+  EXPECT_THAT(names_of(list), ElementsAre("load_1", "load_1+air=10kg_s", "load_1+air=10.5kg_s",
+                                          "load_1+air=11kg_s", "load_1+fuel=2", "load_1+fuel=1"));
+  EXPECT_EQ(list.swept[0].unit->symbol, "kg/s");
   EXPECT_THAT(list.cases[2].values, ElementsAre(::testing::DoubleEq(10.5), 1));
   EXPECT_THAT(list.cases[4].values, ElementsAre(10, 2));
   EXPECT_EQ(list.origins[4].base, 0U);
@@ -123,13 +124,35 @@ TEST_F(CaseListTest, AGridIsEveryCombination) {
   EXPECT_EQ(list.origins[13].base, 7U);
 }
 
-TEST_F(CaseListTest, SweepsThatAreNoneAreRefused) {
-  for (const char* sweep : {"air", "air=1:2", "air=1:2:0", "air=2:1:1", "air=a:2:1", "air=1:1e9:1"}) {
+TEST_F(CaseListTest, SweepsThatAreNoneAreRefusedWithWhatIsWrong) {
+  const std::pair<const char*, const char*> mistakes[] = {
+      {"air", "--sweep cannot be read"},
+      {"air=1:2", "expected name=start:stop:step"},
+      {"air=a:2:1", "--sweep cannot be read"},
+      {"air=1:2:0", "--sweep has a step of 0: found 'air=1:2:0'"},
+      {"air=225:150:5", "--sweep runs away from its end"},
+      {"air=225:150:5", "a step of -5 leads from 225 to 150"},
+      {"air=1:1e9:1", "--sweep has too many values"},
+      {"air=1:2:1 kg", "wrong unit of 'air'"},
+      {"load=0.5:0.7:0.1", "a load is a case's label, and no model goes by it; known are: air, fuel"}};
+  for (const auto& [sweep, text] : mistakes) {
     arguments_.sweeps = {sweep};
-    EXPECT_THAT(refusal(), HasSubstr("--sweep")) << sweep;
+    EXPECT_THAT(refusal(), HasSubstr(text)) << sweep;
   }
   arguments_.sweeps = {"air=1:2:1", "air=3:4:1"};
   EXPECT_THAT(refusal(), HasSubstr("'air' is swept twice"));
+}
+
+TEST_F(CaseListTest, AnInputIsSetOrSwept) {
+  arguments_.case_patterns = {"load_1"};
+  arguments_.settings = {"air=36"};
+  arguments_.sweeps = {"air=30:40:5"};
+  EXPECT_THAT(refusal(), HasSubstr("'air' is in --set and in --sweep: expected one of them"));
+
+  arguments_.case_patterns.clear();
+  arguments_.cases.clear();
+  arguments_.settings.emplace_back("fuel=2");
+  EXPECT_EQ(case_list(arguments_, schema_).cases.size(), 4U) << "where --set makes the base";
 }
 
 TEST_F(CaseListTest, ImpossibleInputsAreRefusedInTheUsersUnit) {

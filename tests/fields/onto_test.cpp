@@ -171,6 +171,48 @@ TEST_F(OntoTest, FluentValuesAreMeansOverTheGivenCells) {
   }
 }
 
+TEST_F(OntoTest, HeadingsAndCellsOfATableMayGiveTheUnit) {
+  folder_.write("m.csv", "x,y,z,volume\n5,13,20,0.5\n6,14,30,0.6\n");
+  folder_.write("mm.csv", "z [cm];x [mm];y [m];volume [m3]\n2000;5000;13;0,5\n30,0m;6e3;1400,0 cm;0.6\n");
+  const std::string format = "--case good --format ip --fields pressure,solid_volume_fraction ";
+  ASSERT_EQ(predict(format + output("m") + onto((folder_ / "m.csv").string())).status, 0);
+  const auto outcome = predict(format + output("mm") + onto((folder_ / "mm.csv").string()));
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+
+  EXPECT_EQ(base::read_text(folder_ / "mm/good.ip"), base::read_text(folder_ / "m/good.ip"));
+}
+
+TEST_F(OntoTest, CentresOutsideTheMeshAreCountedAndAllOfThemRefused) {
+  folder_.write("far.csv", "x,y,z\n5,13,20\n5,13,1000\n500,13,20\n");
+  for (const std::string how : {"conservative", "trilinear"}) {
+    const auto outcome = predict("--case good --format ip --interpolation " + how + " " + output("out") +
+                                 onto((folder_ / "far.csv").string()));
+    EXPECT_EQ(outcome.status, 0) << outcome.text;
+    EXPECT_THAT(outcome.text, HasSubstr("2 of 3 cells lie outside the reduced mesh: they take the nearest"));
+  }
+  folder_.write("mm.csv", "x,y,z\n5000,13000,20000\n6000,14000,30000\n");
+  const auto refused =
+      predict("--case good --format ip " + output("none") + onto((folder_ / "mm.csv").string()));
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_THAT(refused.text, HasSubstr("no cell lies in the reduced mesh"));
+  EXPECT_THAT(refused.text, HasSubstr("found centres x, y, z at 5000 to 6000, 1.3e+04 to 1.4e+04"));
+  EXPECT_FALSE(fs::exists(folder_ / "none/good.ip"));
+}
+
+TEST_F(OntoTest, WhatAKilledStartLeftInTheCaseIsClearedAway) {
+  const auto into = copy_of_case("into");
+  const auto dead = base::trim(test::outcome_of("sh -c 'echo $$'").text);
+  const auto remains = into / (".0." + dead + ".0.tmp"), others = into / (".1." + dead + ".0.tmp");
+  fs::create_directories(remains / "lagrangian");
+  fs::create_directories(others);
+
+  ASSERT_EQ(predict("--case good --format openfoam " + output("into") + onto(into.string())).status, 0);
+
+  EXPECT_FALSE(fs::exists(remains));
+  EXPECT_TRUE(fs::exists(others)) << "of another time folder";
+  EXPECT_TRUE(fs::exists(into / "0/U.air"));
+}
+
 TEST_F(OntoTest, TrilinearSaysWhatItChangedOfTheSolids) {
   const auto outcome = predict("--case good --format ip --interpolation trilinear " + output("out") +
                                onto(ELROM_SOURCE_DIR "/data/formats/instants/averages.h5"));
@@ -196,6 +238,12 @@ TEST_F(OntoTest, MistakesAreOneLineEach) {
   expect("--format csv " + onto(), 2, "--onto is for --format ip and openfoam");
   expect("--format ip --names presure=p", 2, "did you mean 'pressure'?");
   expect("--format ip --names pressure", 2, "--names cannot be read");
+  expect("--format ip --names pressure=x-velocity", 2,
+         "--names gives two fields one name: found 'x-velocity' for gas_velocity_x and pressure");
+  expect("--format ip --names pressure=p,solid_diameter=p", 2, "found 'p' for pressure and solid_diameter");
+  folder_.write("heavy.csv", "x [kg],y,z\n1,2,3\n");
+  expect("--format ip " + onto((folder_ / "heavy.csv").string()), 3,
+         "a unit of another dimension: found 'kg'");
 
   const auto damaged = copy_of_case("damaged");
   folder_.write("damaged/constant/polyMesh/owner", "3(0 0");

@@ -199,7 +199,7 @@ TEST_F(ProgramTest, ASettingLeavesTheBaseCasesFileAlone) {
   ASSERT_EQ(predict(output("out") + " --case good --set 'flow_0=7.5kg/s'").status, 0);
 
   EXPECT_EQ(test::read_bytes(folder_ / "out/good.hdf"), before);
-  EXPECT_THAT(files_in("out"), ::testing::UnorderedElementsAre("good.hdf", "good+flow_0=27.hdf"));
+  EXPECT_THAT(files_in("out"), ::testing::UnorderedElementsAre("good.hdf", "good+flow_0=7.5kg_s.hdf"));
 }
 
 TEST_F(ProgramTest, ASweepWritesASummaryAndAPageOfCurves) {
@@ -215,15 +215,43 @@ TEST_F(ProgramTest, ASweepWritesASummaryAndAPageOfCurves) {
   const auto at = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(headings, name) - headings.begin());
   };
-  EXPECT_EQ(last[0], "good+flow_0=28.8");
+  EXPECT_EQ(last[0], "good+flow_0=8kg_s");
   EXPECT_EQ(last[1], "good");
-  EXPECT_EQ(last[at("flow_0 [t/h]")], "28.8");
+  EXPECT_EQ(last[at("flow_0 [kg/s]")], "8");
+  EXPECT_EQ(last[at("held")], "3 other inputs at the values of good");
   const double mean = std::stod(last[at("pressure mean [Pa]")]);
   EXPECT_NEAR(std::stod(last[at("change of pressure mean [Pa]")]),
               mean - std::stod(base_case[at("pressure mean [Pa]")]), 1e-5 * std::abs(mean));
   EXPECT_THAT(
       test::read_bytes(folder_ / "page.html"),
       ::testing::AllOf(HasSubstr("<polyline"), HasSubstr("pressure mean [Pa]"), HasSubstr("</html>")));
+}
+
+TEST_F(ProgramTest, WhereThePageCannotLieIsKnownBeforeAnyCaseIsPredicted) {
+  const std::string sweep = " --case good --sweep 'flow_0=7:8:0.5 kg/s' --page '";
+  const auto refused = predict(output("out") + sweep + (folder_ / "cases.csv/page.html").string() + "'");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_EQ(base::split(refused.text, '\n').size(), 2U) << refused.text;
+  EXPECT_THAT(files_in("out"), ::testing::IsEmpty());
+
+  EXPECT_EQ(predict(output("out") + sweep + (folder_ / "new/folder/page.html").string() + "'").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "new/folder/page.html"));
+}
+
+/// A process id that was somebody's and is nobody's now.
+std::string dead_process() { return base::trim(test::outcome_of("sh -c 'echo $$'").text); }
+
+TEST_F(ProgramTest, WhatKilledRunsLeftHalfWrittenIsClearedAway) {
+  std::filesystem::create_directories(folder_ / "out");
+  const auto dead = dead_process();
+  for (const std::string name : {".good.hdf.", ".summary.csv.", ".good.csv."})
+    test::write_bytes(folder_ / ("out/" + name + dead + ".3.tmp"), "half");
+
+  ASSERT_EQ(predict(output("out") + " --case good").status, 0);
+
+  EXPECT_THAT(files_in("out"), ::testing::UnorderedElementsAre("good.hdf", ".summary.csv." + dead + ".3.tmp",
+                                                               ".good.csv." + dead + ".3.tmp"))
+      << "of what this run writes, and nothing else";
 }
 
 TEST_F(ProgramTest, SeveralCasesStreamWithACaseColumnInTheTablesOrder) {
@@ -259,6 +287,7 @@ TEST_F(ProgramTest, ALongTableIsCountedNotListed) {
 TEST_F(ProgramTest, HelpIsNoError) {
   EXPECT_EQ(run("--help").status, 0);
   EXPECT_THAT(run("--help").text, HasSubstr("--strict"));
+  EXPECT_THAT(run("--help").text, HasSubstr("All other inputs are held at the base's values"));
   EXPECT_EQ(run("").status, 2);
 }
 

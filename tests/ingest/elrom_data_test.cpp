@@ -50,6 +50,36 @@ TEST_F(ElromData, RemovesCasesByNameAndPattern) {
   EXPECT_EQ(field::SnapshotStore::open(folder_ / "store.h5").n_cases(), 2U);
 }
 
+TEST_F(ElromData, RemovingCasesThatJudgeIsTold) {
+  for (const auto* name : {"train_000", "train_001", "load_064"}) deliver(name);
+  fs::copy_file(ELROM_SOURCE_DIR "/data/mesh/furnace_20x42x66.toml", folder_ / "mesh.toml");
+  ASSERT_EQ(run("import" + mesh_ + "in/*.h5"), 0) << error_;
+
+  EXPECT_EQ(run("remove --store store.h5 load_064 train_001"), 0) << error_;
+  EXPECT_THAT(error_, AllOf(HasSubstr("warning: held out so far, to judge models on: load_064;"),
+                            HasSubstr("elrom-report accuracy STUDY --cases")));
+  deliver("train_002");
+  ASSERT_EQ(run("import" + mesh_ + "in/train_002.h5"), 0) << error_;
+  EXPECT_EQ(run("remove --store store.h5 train_002"), 0);
+  EXPECT_EQ(error_, "");
+}
+
+TEST_F(ElromData, ChecksExportsWithoutInputsBesideATableOfThem) {
+  deliver("train_001");
+  ASSERT_EQ(run("import" + mesh_ + "in/*.h5"), 0) << error_;
+  fs::copy_file(ELROM_SOURCE_DIR "/data/formats/fluent_ascii/train_000_comma.txt.gz",
+                folder_ / "train_000.txt.gz");
+  const std::string cases = " --cases " ELROM_SOURCE_DIR "/data/cases/cases.csv";
+
+  EXPECT_EQ(run("check store.h5 train_000.txt.gz"), 3);
+  EXPECT_THAT(out_, HasSubstr("give them in a table by --cases"));
+  (void)run("check store.h5 train_000.txt.gz" + cases);
+  EXPECT_THAT(out_, AllOf(HasSubstr("2 cases checked"), ::testing::Not(HasSubstr("unreadable"))));
+  fs::rename(folder_ / "train_000.txt.gz", folder_ / "trian_000.txt.gz");
+  (void)run("check store.h5 trian_000.txt.gz" + cases);
+  EXPECT_THAT(out_, HasSubstr("did you mean 'train_000'?"));
+}
+
 TEST_F(ElromData, ANameThatMatchesNothingRemovesNothing) {
   for (const auto* name : {"train_000", "train_001"}) deliver(name);
   ASSERT_EQ(run("import" + mesh_ + "in/*.h5"), 0) << error_;
@@ -80,6 +110,13 @@ TEST_F(ElromData, WatchOnceTellsByItsStatusWhatCame) {
   EXPECT_EQ(run(watch), 0);
   EXPECT_THAT(out_, HasSubstr("added: train_000; store.h5 now holds 1"));
   EXPECT_EQ(run(watch), 8);
+}
+
+TEST_F(ElromData, WatchLeavesNotesAloneAndSaysSo) {
+  test::write_bytes(folder_ / "in/README.txt", "Exports of the furnace, as they come.\n");
+  EXPECT_EQ(run("watch in --once --every 0.1" + mesh_), 8);
+  EXPECT_THAT(out_, AllOf(HasSubstr("left alone, no exports: README.txt\n"), HasSubstr("nothing new")));
+  EXPECT_TRUE(fs::exists(folder_ / "in/README.txt"));
 }
 
 TEST_F(ElromData, TheCommandIsToldOfEachBatchAndItsFailureStopsNothing) {

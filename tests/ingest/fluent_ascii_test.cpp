@@ -83,6 +83,15 @@ TEST(FluentAscii, UnitsInHeadingsAreConverted) {
                                            {0.5f, 0.f, 0.f, 0.f, 0.f, 10.f, 1500.f, 200e-6f, 0.12f}));
 }
 
+TEST(FluentAscii, TabsSeparateAsBlanksDo) {
+  const test::TemporaryFolder folder;
+  const auto found =
+      read_fluent_ascii(folder.write("a.txt", "x [mm]\ty\tz\tpressure [kPa]\n1500\t2\t3\t4\n"));
+
+  EXPECT_DOUBLE_EQ(found.centre(0, 0), 1.5);
+  EXPECT_FLOAT_EQ(found.values(0, 0), 4000);
+}
+
 std::string message_of(const std::string& text) {
   const test::TemporaryFolder folder;
   const auto path = folder.write("bad.txt", text);

@@ -14,6 +14,8 @@
 #include "elrom/report/learning_curve.hpp"
 #include "elrom/report/page.hpp"
 #include "report/small_study.hpp"
+#include "support/recording_log.hpp"
+#include "support/throws.hpp"
 
 namespace elrom::report {
 namespace {
@@ -85,6 +87,31 @@ TEST_F(Accuracy, NoiseIsThatOfTheRepeatedRuns) {
   EXPECT_NEAR(report_->fields[0].noise.front(), 60 * 0.05 * 0.05, 0.5 * 60 * 0.05 * 0.05);
   EXPECT_LT(report_->fields[0].nrmse_without_noise(0), report_->fields[0].nrmse(0));
   EXPECT_NEAR(report_->fields[0].budget.nrmse_squared(), std::pow(report_->fields[0].nrmse(0), 2), 1e-12);
+}
+
+TEST(AccuracyOfAChangedStore, CasesThatLeftItAreNoDeadEnd) {
+  const SmallStudy study(folder("changed"), {.n_held_out = 4});
+  field::remove_cases(study.folder() / "snapshots.h5", {"load_13", "train_3"});
+  test::RecordingLog log;
+
+  EXPECT_ERROR(InputError, "does not hold case 'load_13', which the study held out",
+               evaluate({.study = study.folder()}, log));
+  EXPECT_ERROR(InputError, "judge on others by --cases", evaluate({.study = study.folder()}, log));
+  EXPECT_ERROR(UsageError, "trained on case 'train_1'",
+               evaluate({.study = study.folder(), .cases = {"train_1"}}, log));
+  EXPECT_ERROR(UsageError, "holds no case 'lood_14'",
+               evaluate({.study = study.folder(), .cases = {"lood_14"}}, log));
+
+  const auto report = evaluate({.study = study.folder(), .cases = {"load_*"}}, log);
+  ASSERT_EQ(report.cases.size(), 3U);
+  EXPECT_EQ(report.cases[1].name, "load_14");
+  EXPECT_EQ(report.n_training, SmallStudy::n_training - 1);
+  EXPECT_THAT(log.text(), HasSubstr("not in the store any more: train_3;"));
+
+  const auto curve = learning_curve(
+      {.study = study.folder(), .cases = {"load_14"}, .method = "linear", .n_points = 2, .n_repeats = 1},
+      log);
+  EXPECT_EQ(curve.points.back().cases, SmallStudy::n_training - 1);
 }
 
 TEST(AccuracyOfAverages, FollowFromTheRunsByHand) {

@@ -102,7 +102,45 @@ TEST_F(TrainedStudy, ARefusedModelEndsWithSevenAndDoesNotAnswer) {
   EXPECT_THAT(out, ::testing::HasSubstr("not promoted: version 2"));
   EXPECT_EQ(run("run " + study() + with("nearest")), 7) << error;
   EXPECT_EQ(run("fit " + study() + with("nearest")), 7) << error;
+  EXPECT_EQ(run("retrain " + study() + with("nearest")), 7) << error;
+  EXPECT_THAT(out, ::testing::HasSubstr("nothing was trained: version 2 is of these 16 cases"));
   EXPECT_EQ(model(), before);
+  EXPECT_EQ(run("log " + study()), 0);
+  EXPECT_EQ(std::ranges::count(out, '\n'), 4)
+      << "three versions (a run does not begin at the present one), a line each, and which one answers: "
+      << out;
+}
+
+TEST_F(TrainedStudy, ALogThatIsBrokenOrLostIsOneLineAndLosesNothing) {
+  const auto before = model();
+  test::write_bytes(study() + "/models/log.json", "{");
+  for (const std::string command : {"log ", "retrain ", "rollback "}) {
+    EXPECT_EQ(run(command + study() + (command == "retrain " ? with("linear") : "")), 3);
+    EXPECT_EQ(std::ranges::count(error, '\n'), 1) << error;
+    EXPECT_THAT(error, ::testing::HasSubstr("put it aside"));
+  }
+  std::filesystem::remove(study() + "/models/log.json");
+  EXPECT_EQ(run("log " + study()), 0);
+  EXPECT_THAT(out, ::testing::HasSubstr("log.json is missing"));
+  EXPECT_EQ(run("retrain " + study() + with("linear")), 8) << error;
+  EXPECT_THAT(error, ::testing::HasSubstr("log.json is missing"));
+  EXPECT_EQ(run("log " + study()), 0);
+  EXPECT_THAT(out, ::testing::HasSubstr("1  taken in"));
+  EXPECT_EQ(model(), before);
+}
+
+TEST_F(ElromTrain, ABudgetWarnsOnce) {
+  auto furnace = small_furnace();
+  furnace.held_out.emplace_back("spare_*");
+  write_small_store(store(), 15, 0, furnace);
+
+  ASSERT_EQ(run("run " + study() + " --store " + store() + " -q --set peers.networks=false --budget 30s"), 0)
+      << error;
+
+  const std::string warning = "no case matches 'spare_*'";
+  const auto first = error.find(warning);
+  ASSERT_NE(first, std::string::npos) << error;
+  EXPECT_EQ(error.find(warning, first + 1), std::string::npos) << error;
 }
 
 TEST_F(TrainedStudy, NothingNewEndsWithEight) {

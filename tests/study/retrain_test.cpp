@@ -94,6 +94,39 @@ TEST_F(Retraining, ARunDoesNotBringARefusedBundleIn) {
   EXPECT_EQ(test::read_bytes(model()), before);
 }
 
+TEST_F(Retraining, ARefusedRetrainingIsKnownWhenItIsRepeated) {
+  fit("linear");
+  grow();
+  const auto first = retrain_with("nearest");
+  const auto stages = test::read_bytes(folder_ / "timing.json");
+
+  const auto again = retrain_with("nearest");
+
+  EXPECT_FALSE(first.made_before);
+  EXPECT_TRUE(again.made_before);
+  EXPECT_FALSE(again.nothing_new);
+  EXPECT_EQ(again.promotion.kind, Promotion::Kind::refused);
+  EXPECT_EQ(again.promotion.number, first.promotion.number);
+  EXPECT_EQ(to_json(*again.promotion.verdict), to_json(*first.promotion.verdict));
+  EXPECT_EQ(Versions(folder_.path()).log().size(), 2u) << "the first model and one refusal";
+  EXPECT_EQ(test::read_bytes(folder_ / "timing.json"), stages) << "nothing was trained";
+}
+
+TEST_F(Retraining, AnotherToleranceIsAskedOfTheGateAgain) {
+  fit("linear");
+  grow();
+  const auto refused = retrain_with("nearest");
+  ASSERT_FALSE(refused.promoted());
+  auto tolerant = settings("nearest");
+  tolerant.gate.tolerance = 100;
+
+  const auto report = retrain(folder_.path(), tolerant, {}, silent_log(), {});
+
+  EXPECT_TRUE(report.made_before);
+  EXPECT_TRUE(report.promoted());
+  EXPECT_EQ(Versions(folder_.path()).current(), refused.promotion.number);
+}
+
 TEST_F(Retraining, AModelThatLostFieldsIsRefused) {
   fit("linear");
   const auto fields = model::BundleReader(model()).info().fields;

@@ -138,6 +138,52 @@ TEST_F(SomeVersions, ADecisionInTheLogIsCarriedOut) {
   EXPECT_EQ(Versions(study()).current(), 2);
 }
 
+TEST_F(SomeVersions, ALostLogBeginsAnewWithTheVersionsThatAreThere) {
+  Versions versions(study());
+  for (const int number : {1, 2, 3}) add(versions, number, number < 3);
+  fs::remove(study() / "models" / "log.json");
+  Versions found(study());
+  EXPECT_TRUE(found.has_lost_its_log());
+
+  found.settle();
+
+  const Versions after(study());
+  EXPECT_FALSE(after.has_lost_its_log());
+  EXPECT_EQ(after.current(), 2);
+  EXPECT_EQ(content_of_model(), "2");
+  ASSERT_EQ(after.log().size(), 3u);
+  EXPECT_EQ(after.log().back().number, 2);
+  EXPECT_TRUE(after.log().back().promoted);
+  EXPECT_EQ(after.log().back().by, "taken in");
+  EXPECT_EQ(after.next(), 4);
+}
+
+TEST_F(SomeVersions, ALogThatCannotBeReadIsLeftAsItIs) {
+  Versions versions(study());
+  add(versions, 1, true);
+  base::write_text(study() / "models" / "log.json", "{\"kind\": ");
+
+  EXPECT_ERROR(InputError, "a new one begins with the versions", Versions(study()));
+  EXPECT_EQ(base::read_text(study() / "models" / "log.json"), "{\"kind\": ");
+}
+
+TEST_F(SomeVersions, ARefusalIsKnownBesideTheSamePresentOneAlone) {
+  Versions versions(study());
+  add(versions, 1, true);
+  write_bundle(versions.file(2), 2);
+  const VersionEvent refusal{
+      .number = 2, .by = "retrain", .promoted = false, .verdict = R"({"passed": false})"};
+  EXPECT_FALSE(versions.is_known(refusal));
+  versions.record(refusal);
+  EXPECT_TRUE(versions.is_known(refusal));
+  EXPECT_FALSE(versions.is_known({.number = 2, .by = "run", .promoted = true}));
+  EXPECT_FALSE(
+      versions.is_known({.number = 2, .by = "run", .promoted = false, .verdict = R"({"passed": 0})"}));
+
+  add(versions, 3, true);
+  EXPECT_FALSE(versions.is_known(refusal)) << "another one answers now";
+}
+
 TEST_F(SomeVersions, AModelThatCannotBeReadIsPutAside) {
   base::write_text(model(), "no bundle");
 

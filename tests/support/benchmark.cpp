@@ -42,6 +42,29 @@ void Arguments::add_to(CommandLine& line, const std::string& store_help, Command
   line.add("--threads", threads, "threads of the work that is measured");
 }
 
+void StudyArguments::add_to(CommandLine& line) {
+  Arguments::add_to(line, "snapshot store", CommandLine::Need::required);
+  line.add("--effort", effort, "of the studies");
+  line.add_repeated("--set", settings, "key=value: a setting of the studies; repeatable");
+  line.add("--folder", folder, "keep the studies here, and go on from those that are there");
+}
+
+nlohmann::ordered_json trained_report(const StudyArguments& arguments, const std::filesystem::path& folder,
+                                      const std::filesystem::path& store,
+                                      const std::vector<std::string>& further) {
+  const auto file = folder / "accuracy.json";
+  std::filesystem::create_directories(folder);
+  std::vector<std::string> words{"run",          folder.string(),  "--store",
+                                 store.string(), "--threads",      std::to_string(arguments.threads),
+                                 "--effort",     arguments.effort, "-q"};
+  for (const auto* settings : {&further, &arguments.settings})
+    for (const auto& setting : *settings) words.push_back("--set=" + setting);
+  run_program(sibling("elrom-train"), words);
+  run_program(sibling("elrom-report"),
+              {"accuracy", folder.string(), "--store", store.string(), "--quiet", "--json", file.string()});
+  return nlohmann::ordered_json::parse(base::read_text(file));
+}
+
 int benchmark_main(const std::string& name, const std::string& what, const std::string& store_help, int argc,
                    char** argv, const std::function<nlohmann::ordered_json(const Arguments&)>& measure) {
   return base::run_app(name, [&] {

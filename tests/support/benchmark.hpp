@@ -59,6 +59,15 @@ struct Arguments {
               CommandLine::Need store_need = CommandLine::Need::optional);
 };
 
+/// Options of those that train studies and have them judged.
+struct StudyArguments : Arguments {
+  std::string effort = "quick";
+  std::vector<std::string> settings;
+  std::filesystem::path folder;  ///< empty: one that is removed
+
+  void add_to(CommandLine& line);
+};
+
 /// A program of the same build, by its name.
 inline std::filesystem::path sibling(const std::string& program) {
   const auto path = std::filesystem::read_symlink("/proc/self/exe").parent_path() / program;
@@ -90,6 +99,13 @@ inline rusage run_program(const std::filesystem::path& program, const std::vecto
   }
   return usage;
 }
+
+/// `elrom-train run` in `folder` on a store, and `elrom-report accuracy` of it; a folder that is there goes
+/// on from where it was.
+/// @param further settings, "key=value", before those of the arguments @return the report
+nlohmann::ordered_json trained_report(const StudyArguments& arguments, const std::filesystem::path& folder,
+                                      const std::filesystem::path& store,
+                                      const std::vector<std::string>& further = {});
 
 /// A store of the full size, or of a small one, from elrom-data generate.
 inline std::filesystem::path generate_store(const std::filesystem::path& folder, bool small) {

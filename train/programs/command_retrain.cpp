@@ -24,6 +24,9 @@ int print(const RetrainArguments& arguments, const study::Settings& settings,
                report.promotion.number, report.cases_before);
     return static_cast<int>(ExitStatus::nothing_new);
   }
+  if (report.made_before)
+    fmt::print("nothing was trained: version {} is of these {} cases and these settings\n",
+               report.promotion.number, report.cases_after);
   fmt::print("{} -> {} cases in {}\n", report.cases_before, report.cases_after,
              base::duration(report.seconds));
   if (report.effects) fmt::print("{}", in_words(*report.effects, settings.gate.tolerance / 2));
@@ -31,6 +34,7 @@ int print(const RetrainArguments& arguments, const study::Settings& settings,
 }
 
 int run_retrain(const RetrainArguments& arguments) {
+  if (!arguments.json.empty()) base::expect_writable(arguments.json);
   auto with = arguments.study;
   if (arguments.small) {
     with.effort = "quick";

@@ -49,8 +49,10 @@ int train(const StudyArguments& arguments, bool with_peers, const study::Setting
 }
 
 int train_within(double seconds, const StudyArguments& arguments, bool with_peers,
-                 const study::Settings& settings, const study::Toolbox& tools, Log& log) {
+                 const study::Settings& settings, const study::Toolbox& tools, Log& all) {
   const base::Stopwatch watch;
+  const auto once = warn_once(all);  // every level opens the study anew
+  Log& log = *once;
   const auto model = study::cost_model(arguments.folder, settings, log);
   const auto levels = study::budget_levels(settings, model);
   const auto resolved = arguments.folder / "resolved.toml";

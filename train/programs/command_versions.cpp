@@ -17,6 +17,8 @@ namespace {
 using Json = nlohmann::json;
 using std::filesystem::path;
 
+constexpr std::string_view taken_in = "taken in";
+
 Json verdict_of(const study::VersionEvent& event) {
   return event.verdict.empty() ? Json() : Json::parse(event.verdict);
 }
@@ -26,6 +28,7 @@ std::string shown(const Json& number) {
 }
 
 std::string worse_fields(const Json& verdict) {
+  if (verdict.is_null()) return "not to be compared with the present one";
   std::vector<std::string> worse;
   for (const auto& field : verdict["fields"])
     if (field["verdict"] == "worse")
@@ -37,23 +40,33 @@ std::string worse_fields(const Json& verdict) {
   return base::join(worse, ", ");
 }
 
+std::string against(const study::VersionEvent& judged) {
+  const auto verdict = verdict_of(judged);
+  return (verdict.is_null() ? "" : "worse: ") + worse_fields(verdict);
+}
+
 void print_event(const study::VersionEvent& event) {
   fmt::print("{:>4}  {:<9} {:>5} cases  {}", event.number, event.by, event.n_cases,
-             event.promoted ? "answers" : "refused");
+             event.promoted         ? "answers"
+             : event.by == taken_in ? "verdict not known"
+                                    : "refused");
   if (event.parent) fmt::print(", after {}", *event.parent);
   if (!event.date.empty()) fmt::print(", {}", event.date);
   if (const auto verdict = verdict_of(event); !verdict.is_null()) {
     fmt::print(", error {} -> {} on {} {}", shown(verdict["before"]), shown(verdict["after"]),
                verdict["cases"].size(), verdict["judged_on"].get<std::string>());
     if (!event.promoted) fmt::print("; worse: {}", worse_fields(verdict));
-  } else if (!event.promoted) {
-    fmt::print(", not to be compared with the present one");
+  } else if (!event.promoted && event.by != taken_in) {
+    fmt::print(", {}", worse_fields(verdict));
   }
   fmt::print("\n");
 }
 
 int print_log(const path& folder) {
   const study::Versions versions(folder);
+  if (versions.has_lost_its_log())
+    fmt::print("{}; the versions are {}\n", versions.lost_log_sentence(),
+               fmt::join(versions.numbers(), ", "));
   for (const auto& event : versions.log()) print_event(event);
   const auto current = versions.current();
   if (current)
@@ -72,6 +85,7 @@ void expect_study(const path& folder) {
 
 study::Versions open_to_change(const path& folder) {
   study::Versions versions(folder);
+  if (versions.has_lost_its_log()) make_console_log()->warning(versions.lost_log_sentence());
   versions.settle();
   if (!versions.current())
     throw InputError({.what = "no versions of a model",
@@ -90,8 +104,8 @@ int promote(const path& folder, int number, const std::string& date) {
     return 0;
   }
   const auto* judged = versions.last_of(number);
-  if (judged != nullptr && !judged->promoted)
-    fmt::print("this goes against the gate, which found it worse: {}\n", worse_fields(verdict_of(*judged)));
+  if (judged != nullptr && !judged->promoted && judged->by != taken_in)
+    fmt::print("this goes against the gate, which found it {}\n", against(*judged));
   versions.record({.number = number, .by = "promote", .promoted = true, .date = date});
   fmt::print("version {} answers now\n", number);
   return 0;

@@ -49,8 +49,10 @@ bool wants_colour() { return ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COL
 
 int run_accuracy(const Arguments& arguments, Log& log) {
   const auto study = fs::path(arguments.studies.front());
-  report::AccuracyOptions options{
-      .study = study, .store = arguments.store_path(), .n_threads = arguments.n_threads()};
+  report::AccuracyOptions options{.study = study,
+                                  .store = arguments.store_path(),
+                                  .cases = arguments.cases,
+                                  .n_threads = arguments.n_threads()};
   options.against.assign(arguments.against.begin(), arguments.against.end());
   options.figures = !arguments.html.empty();
   const auto accuracy = report::evaluate(options, log, base::interrupt_token());
@@ -86,6 +88,7 @@ int run_learning_curve(const Arguments& arguments, Log& log) {
   const auto study = fs::path(arguments.studies.front());
   report::LearningCurveOptions options{.study = study,
                                        .store = arguments.store_path(),
+                                       .cases = arguments.cases,
                                        .method = arguments.method,
                                        .fields = arguments.fields,
                                        .n_points = arguments.points,
@@ -106,6 +109,7 @@ int run_learning_curve(const Arguments& arguments, Log& log) {
 
 int run_cost(const Arguments& arguments, Log& log) {
   report::CostOptions options{.store = arguments.store_path(),
+                              .cases = arguments.cases,
                               .peers = !arguments.no_peers,
                               .sizes = arguments.full,
                               .n_threads = arguments.n_threads(),
@@ -130,6 +134,9 @@ int run_collisions(const Arguments& arguments, Log& log) {
 
 void add_common(cli::App& command, Arguments& arguments) {
   command.add_option("--store", arguments.store, "store of cases, instead of the one the study names");
+  base::comma_list(command.add_option("--cases", arguments.cases,
+                                      "cases to judge on, names or patterns, separated by commas; default: "
+                                      "those that the study (of compare: A's) held out"));
   command.add_option("--threads", arguments.threads, "threads to use; 0: all")
       ->capture_default_str()
       ->check(cli::NonNegativeNumber);
@@ -169,9 +176,6 @@ void add_compare(cli::App& app, Arguments& arguments) {
       "compare", "Is B better than A? Field by field on the same cases; exit status 7 where B is worse");
   command.add_option("A", arguments.a, "a bundle (.elrom) or a trained study")->required();
   command.add_option("B", arguments.b, "another")->required();
-  base::comma_list(command.add_option("--cases", arguments.cases,
-                                      "cases to compare on, names or patterns, separated by commas; default: "
-                                      "the held-out cases of A's study"));
   command.add_option("--json", arguments.json, "write all figures as JSON");
   command.add_option("--html", arguments.html, "write the page with cuts: one file that opens offline");
   add_common(command, arguments);
@@ -251,6 +255,8 @@ Exit status: 2 usage, 3 input, 5 numerical, 7 B is worse than A (compare), 130 i
   add_collisions(app, arguments);
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto log = make_console_log(arguments.quiet ? Level::warning : Level::info);
+  for (const auto& file : {arguments.json, arguments.csv, arguments.html})
+    if (!file.empty()) base::expect_writable(file);
   if (app.got_subcommand("accuracy")) return run_accuracy(arguments, *log);
   if (app.got_subcommand("compare")) return run_compare(arguments, *log);
   if (app.got_subcommand("learning-curve")) return run_learning_curve(arguments, *log);

@@ -8,6 +8,7 @@
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/model/bundle.hpp"
 #include "evaluate_bundles.hpp"
+#include "store_rows.hpp"
 
 namespace elrom::report {
 namespace {
@@ -43,23 +44,6 @@ StudyFiles files_of(const CompareOptions& options) {
           .name = options.a.string()};
 }
 
-// Names in the store that match; what matches nothing is a mistake.
-std::vector<std::string> named_cases(const field::SnapshotStore& store,
-                                     const std::vector<std::string>& patterns) {
-  std::vector<std::string> names, known;
-  for (const auto& one : store.cases()) known.push_back(one.inputs.name);
-  for (const auto& pattern : patterns) {
-    const auto found = store.find(pattern);
-    if (found.empty())
-      throw UsageError({.what = "the store holds no case '" + pattern + "'",
-                        .where = store.path().string(),
-                        .advice = base::name_advice(pattern, known)});
-    for (const auto row : found)
-      if (!is_in(names, known[row])) names.push_back(known[row]);
-  }
-  return names;
-}
-
 /// Cases to judge on; those that A or B was trained on go to `left_out`.
 std::vector<std::string> judging_cases(const CompareOptions& options, const std::vector<std::string>& wanted,
                                        const StudyFiles& files, std::vector<std::string>& left_out) {
@@ -83,18 +67,6 @@ std::vector<std::string> judging_cases(const CompareOptions& options, const std:
                       .found = base::join(left_out, ", "),
                       .advice = "name cases that neither has seen with --cases"});
   return cases;
-}
-
-// Errors are measured by the mean of the cases that A was trained on, as in its study's report.
-std::vector<std::string> reference_cases(const field::SnapshotStore& store, const fs::path& bundle) {
-  std::vector<std::string> names;
-  for (const auto& name : trained_cases(bundle))
-    if (store.find(name).size() == 1) names.push_back(name);
-  if (names.empty())
-    throw InputError({.what = "the store holds no case that A was trained on",
-                      .where = store.path().string(),
-                      .advice = "name the store it was trained on with --store"});
-  return names;
 }
 
 void keep_common_fields(Comparison& comparison) {
@@ -144,7 +116,7 @@ Comparison compare(const CompareOptions& options, Log& log, const std::stop_toke
     const auto store = field::SnapshotStore::open(files.store);
     const auto wanted = options.cases.empty() ? files.held_out : named_cases(store, options.cases);
     files.held_out = judging_cases(options, wanted, files, comparison.left_out);
-    files.building = reference_cases(store, a.path);
+    files.building = trained_cases(a.path);  // by whose mean errors are measured, as in its study's report
   }
   if (!comparison.left_out.empty())
     log.warning("left out, since A or B was trained on them: " + base::join(comparison.left_out, ", "));

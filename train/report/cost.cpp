@@ -191,6 +191,7 @@ void add_sizes(CostReport& report, const CostOptions& options, Log& log, const s
   for (const auto& method : refittable_methods()) {
     const auto curve = learning_curve({.study = options.studies.front(),
                                        .store = options.store,
+                                       .cases = options.cases,
                                        .method = method,
                                        .n_points = 2,  // and a third of the cases
                                        .n_threads = options.n_threads},
@@ -212,9 +213,12 @@ CostReport cost_report(const CostOptions& options, Log& log, const std::stop_tok
   if (options.studies.empty()) throw UsageError("no study to report on; name at least one study directory");
   CostReport report{.points = {}, .reference = options.reference, .parts = {}};
   for (const auto& study : options.studies)
-    add_points(report,
-               evaluate({.study = study, .store = options.store, .n_threads = options.n_threads}, log, stop),
-               options.peers);
+    add_points(
+        report,
+        evaluate(
+            {.study = study, .store = options.store, .cases = options.cases, .n_threads = options.n_threads},
+            log, stop),
+        options.peers);
   if (options.sizes) add_sizes(report, options, log, stop);
   return report;
 }

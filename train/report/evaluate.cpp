@@ -16,26 +16,14 @@
 #include "elrom/report/accuracy.hpp"
 #include "evaluate_bundles.hpp"
 #include "evaluate_field.hpp"
+#include "store_rows.hpp"
 
 namespace elrom::report {
 namespace {
 
-std::vector<std::size_t> rows_of(const field::SnapshotStore& store, const std::vector<std::string>& names) {
-  std::vector<std::size_t> rows;
-  for (const auto& name : names) {
-    const auto found = store.find(name);
-    if (found.size() != 1)
-      throw InputError({.what = "the store does not hold case '" + name + "' of the study's split",
-                        .where = store.path().string(),
-                        .advice = "name the store the study was trained on with --store"});
-    rows.push_back(found.front());
-  }
-  return rows;
-}
-
 // The study's held-out cases, and repeated runs that came into the store since it was trained.
 std::vector<std::size_t> judged_rows(const field::SnapshotStore& store, const StudyFiles& study) {
-  auto rows = rows_of(store, study.held_out);
+  auto rows = judging_rows(store, study.held_out);
   for (std::size_t row = 0; row < store.n_cases() && store.furnace(); ++row) {
     const auto& name = store.cases()[row].inputs.name;
     if (store.furnace()->is_repeat(name) && std::ranges::find(study.building, name) == study.building.end() &&
@@ -45,14 +33,14 @@ std::vector<std::size_t> judged_rows(const field::SnapshotStore& store, const St
   return rows;
 }
 
-HeldOutCases hold_out_cases(const field::SnapshotStore& store, const StudyFiles& study) {
+HeldOutCases hold_out_cases(const field::SnapshotStore& store, const StudyFiles& study, Log& log) {
   const auto judged = study::judged_cases(store, judged_rows(store, study));
   HeldOutCases cases{.building = {}, .scored = judged.scored, .repeats = judged.repeats, .inputs = {}};
   if (cases.scored.empty())
     throw UsageError({.what = "no held-out case to score",
                       .where = study.directory.string(),
                       .advice = "name some in study.toml: [split] held_out = [\"load_*\"]"});
-  cases.building = rows_of(store, study.building);
+  cases.building = learnt_rows(store, study.building, log);
   cases.inputs = store.inputs(cases.scored);
   return cases;
 }
@@ -180,7 +168,7 @@ std::string now_utc() {
 }  // namespace
 
 AccuracyReport evaluate(const AccuracyOptions& options, Log& log, const std::stop_token& stop) {
-  auto study = open_study(options.study, options.store);
+  auto study = open_study(options.study, options.store, options.cases);
   for (const auto& other : options.against) study.bundles.push_back(open_other(other));
   return evaluate_bundles(std::move(study), {options.n_threads, options.figures}, log, stop);
 }
@@ -193,7 +181,7 @@ AccuracyReport evaluate_bundles(StudyFiles study, const EvaluateOptions& options
     report.words = store.furnace()->words;
   else
     log.warning("no gas balance, and no case known as a repeated run: the store has no furnace description");
-  const auto cases = hold_out_cases(store, report.study);
+  const auto cases = hold_out_cases(store, report.study, log);
   report.n_training = cases.building.size();
   report.n_planes = store.mesh().n_planes;
   report.n_columns = store.mesh().n_columns;

@@ -16,6 +16,7 @@
 #include "elrom/study/settings.hpp"
 #include "elrom/study/study.hpp"
 #include "refit.hpp"
+#include "store_rows.hpp"
 
 namespace elrom::report {
 namespace {
@@ -27,19 +28,14 @@ struct Material {
   field::CaseSet cases;  //!< of `building`
 };
 
-Material gather(const StudyFiles& study) {
+Material gather(const StudyFiles& study, Log& log) {
   Material material{field::SnapshotStore::open(study.store), {}, {}, {}};
-  const auto row_of = [&](const std::string& name) {
-    const auto rows = material.store.find(name);
-    if (rows.size() != 1)
-      throw InputError({.what = "the store does not hold case '" + name + "' of the study's split",
-                        .where = study.store.string()});
-    return rows.front();
-  };
-  for (const auto& name : study.building) material.building.push_back(row_of(name));
-  for (const auto& name : study.held_out)
-    if (!material.store.furnace() || !material.store.furnace()->is_repeat(name))
-      material.scored.push_back(row_of(name));
+  material.building = learnt_rows(material.store, study.building, log);
+  auto judges = study.held_out;
+  std::erase_if(judges, [&](const std::string& name) {
+    return material.store.furnace() && material.store.furnace()->is_repeat(name);
+  });
+  material.scored = judging_rows(material.store, judges);
   if (material.scored.empty() || material.building.size() < 4)
     throw UsageError("a learning curve needs at least four training cases and one held-out case");
   material.cases = study::study_cases(material.store, study::read_settings(study.settings), material.building,
@@ -139,8 +135,8 @@ std::vector<LearningPoint> points_of(const std::vector<std::size_t>& sizes,
 }  // namespace
 
 LearningCurve learning_curve(const LearningCurveOptions& options, Log& log, const std::stop_token& stop) {
-  const auto study = open_study(options.study, options.store);
-  auto material = gather(study);
+  const auto study = open_study(options.study, options.store, options.cases);
+  auto material = gather(study, log);
   const model::BundleReader bundle(study.bundles.front().path);
   const auto fields = options.fields.empty()
                           ? bundle.info().fields

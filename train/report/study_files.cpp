@@ -8,6 +8,7 @@
 #include "elrom/study/held_out.hpp"
 #include "elrom/study/settings.hpp"
 #include "elrom/study/timing.hpp"
+#include "store_rows.hpp"
 
 namespace elrom::report {
 namespace {
@@ -55,6 +56,16 @@ void read_timing(StudyFiles& study, const std::string& model_method) {
   }
 }
 
+// Judging on what was learnt would flatter.
+void judge_on(StudyFiles& study, const std::vector<std::string>& cases) {
+  study.held_out = named_cases(field::SnapshotStore::open(study.store), cases);
+  for (const auto& name : study.held_out)
+    if (std::ranges::find(study.building, name) != study.building.end())
+      throw UsageError({.what = "the study was trained on case '" + name + "'",
+                        .where = study.directory.string(),
+                        .advice = "judge on cases that it has not seen"});
+}
+
 }  // namespace
 
 bool is_simple_peer(const std::string& method) {
@@ -62,7 +73,8 @@ bool is_simple_peer(const std::string& method) {
   return known != nullptr && known->peer;
 }
 
-StudyFiles open_study(const fs::path& directory, const std::optional<fs::path>& store) {
+StudyFiles open_study(const fs::path& directory, const std::optional<fs::path>& store,
+                      const std::vector<std::string>& cases) {
   const auto model = directory / "model.elrom", split_file = directory / "split.json";
   for (const auto& file : {model, split_file})
     if (!fs::exists(file))
@@ -79,6 +91,7 @@ StudyFiles open_study(const fs::path& directory, const std::optional<fs::path>& 
   for (const auto* part : {&split.train, &split.validation, &split.test})
     files.building.insert(files.building.end(), part->begin(), part->end());
   files.held_out = split.held_out;
+  if (!cases.empty()) judge_on(files, cases);
   files.bundles.push_back({.name = "ELROM", .path = model});
   for (auto& peer : peers_of(directory)) files.bundles.push_back(std::move(peer));
   read_timing(files, study::read_settings(settings_file(directory)).method);

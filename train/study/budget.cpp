@@ -107,6 +107,13 @@ Settings without_networks(Settings settings, int folds, bool with_peers) {
   return settings;
 }
 
+/// What takes next to nothing, and stands in where nothing else is done.
+Settings simple_peer(const Settings& settings) {
+  auto simple = without_networks(settings, fewest_folds, false);
+  simple.method = "pod_rbf";
+  return simple;
+}
+
 }  // namespace
 
 CostModel cost_model(const std::filesystem::path& folder, const Settings& settings, Log& log) {
@@ -121,9 +128,7 @@ CostModel cost_model(const std::filesystem::path& folder, const Settings& settin
 
 std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel& model) {
   if (settings.method != "auto") return {{settings.method + " as asked", settings, 0, "what was asked for"}};
-  auto simple = without_networks(settings, fewest_folds, false);
-  simple.method = "pod_rbf";
-  std::vector<BudgetLevel> levels{{"POD + RBF", simple, 0, "a model"}};
+  std::vector<BudgetLevel> levels{{"POD + RBF", simple_peer(settings), 0, "a model"}};
   const auto add = [&](const std::string& name, int folds, bool with_peers, const std::string& buys) {
     const auto own = without_networks(settings, folds, with_peers);
     levels.push_back({fmt::format("{}, {} folds", name, own.peers.folds), own,
@@ -194,8 +199,7 @@ BudgetRun run_within(double seconds, const std::vector<BudgetLevel>& levels, Log
       if (stop.stop_requested()) throw;
       log.warning(fmt::format("the time is up before '{}' is done", level.name));
       if (run.done) return run;
-      run.settings = without_networks(level.settings, fewest_folds, false);
-      run.settings.method = "pod_rbf";
+      run.settings = simple_peer(level.settings);
       train(run.settings, stop);
       return run;
     }

@@ -100,6 +100,10 @@ RetrainReport retrain(const std::filesystem::path& folder, const Settings& setti
       report.promotion.number = versions.current().value_or(0);
       report.promotion.verdict =
           judge(current, current, study.gate_cases(), settings.gate, settings.n_threads());
+    } else if (const auto known = study.version_of_these()) {
+      study.judge_again(*known);
+      report.promotion = study.promotion();
+      report.made_before = true;
     } else {
       study.begin_at(present);
       study.fit();

@@ -98,7 +98,9 @@ struct Study::Impl {
     resolved.store = remembered(folder, settings.store);
     base::write_text(folder / "resolved.toml", to_toml(resolved));
     write_names();
-    Versions(folder).settle();
+    Versions versions(folder);
+    if (versions.has_lost_its_log()) log.warning(versions.lost_log_sentence());
+    versions.settle();
   }
 
   HeldOut held_out_rows() {
@@ -306,8 +308,12 @@ struct Study::Impl {
   /// The model becomes a version, and where the gate lets it pass, or there is none yet, the present one.
   void promote(const FieldStages& stages, const std::string& by) {
     Versions versions(folder);
+    judge_version(versions, version_of(versions, stages), by);
+  }
+
+  void judge_version(Versions& versions, int number, const std::string& by) {
     const auto current = versions.current();
-    promotion = {.kind = Promotion::Kind::first, .number = version_of(versions, stages)};
+    promotion = {.kind = Promotion::Kind::first, .number = number};
     if (current == promotion.number) {
       promotion.kind = Promotion::Kind::unchanged;
       return;
@@ -324,11 +330,12 @@ struct Study::Impl {
       const bool passed = promotion.verdict && promotion.verdict->passed;
       promotion.kind = passed ? Promotion::Kind::promoted : Promotion::Kind::refused;
     }
-    versions.record({.number = promotion.number,
-                     .by = by,
-                     .promoted = promotion.kind != Promotion::Kind::refused,
-                     .date = settings.date,
-                     .verdict = promotion.verdict ? to_json(*promotion.verdict) : ""});
+    const VersionEvent event{.number = promotion.number,
+                             .by = by,
+                             .promoted = promotion.kind != Promotion::Kind::refused,
+                             .date = settings.date,
+                             .verdict = promotion.verdict ? to_json(*promotion.verdict) : ""};
+    if (!versions.is_known(event)) versions.record(event);
   }
 
   std::filesystem::path folder;
@@ -375,6 +382,20 @@ bool Study::is_of_this_study(const model::BundleInfo& bundle) const {
   const bool same_settings = bundle.settings.empty() || bundle.settings == settings_text(impl_->settings);
   return same_settings && bundle.method == impl_->settings.method &&
          of("store") == impl_->store.digest(impl_->rows.building);
+}
+
+std::optional<int> Study::version_of_these() const {
+  const Versions versions(impl_->folder);
+  for (const int number : versions.numbers()) {
+    if (number == versions.current() || digest_if_whole(versions.file(number)).empty()) continue;
+    if (is_of_this_study(model::BundleReader(versions.file(number)).info())) return number;
+  }
+  return std::nullopt;
+}
+
+void Study::judge_again(int version) {
+  Versions versions(impl_->folder);
+  impl_->judge_version(versions, version, "retrain");
 }
 
 void Study::begin_at(const std::filesystem::path& bundle) { impl_->earlier.emplace(bundle); }

@@ -1,7 +1,9 @@
 #include "elrom/study/versions.hpp"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
@@ -56,7 +58,10 @@ std::vector<VersionEvent> read_log(const fs::path& file) {
     for (const auto& event : json.at("events")) events.push_back(event_of(event));
     return events;
   } catch (const Json::exception& fault) {
-    throw InputError({.what = "no valid log of versions", .where = file.string(), .found = fault.what()});
+    throw InputError({.what = "no valid log of versions",
+                      .where = file.string(),
+                      .found = fault.what(),
+                      .advice = "put it aside: a new one begins with the versions, which are all there"});
   }
 }
 
@@ -172,10 +177,58 @@ void Versions::take_in() {
   record({.number = number, .by = "taken in", .promoted = true});
 }
 
+bool Versions::has_lost_its_log() const { return events_.empty() && current(); }
+
+std::string Versions::lost_log_sentence() const {
+  return (folder() / "log.json").string() +
+         " is missing: which version came when, and what the gate said, is not known any more";
+}
+
+bool Versions::is_known(const VersionEvent& event) const {
+  const auto* last = last_of(event.number);
+  const auto verdict_of = [](const VersionEvent& of) {
+    return of.verdict.empty() ? Json() : Json::parse(of.verdict);
+  };
+  return last != nullptr && !last->promoted && !event.promoted && last->parent == current() &&
+         verdict_of(*last) == verdict_of(event);
+}
+
+/// Versions that others came after have answered, and the present one answers.
+void Versions::begin_log() {
+  const auto present = current();
+  if (!has_lost_its_log()) return;
+  std::map<int, model::BundleInfo> found;
+  std::set<std::string> parents;
+  for (const int number : numbers()) {
+    try {
+      const auto& info = found.emplace(number, model::BundleReader(file(number)).info()).first->second;
+      if (const auto parent = info.provenance.find("parent"); parent != info.provenance.end())
+        parents.insert(parent->second);
+    } catch (const InputError&) {
+      // damaged: nothing can be told of it
+    }
+  }
+  const auto add = [&](int number, bool promoted) {
+    const auto& info = found.at(number);
+    const auto date = info.provenance.find("date");
+    events_.push_back({.number = number,
+                       .by = "taken in",
+                       .promoted = promoted,
+                       .digest = digest_of(file(number)),
+                       .n_cases = info.cases.size(),
+                       .date = date == info.provenance.end() ? "" : date->second});
+  };
+  for (const auto& [number, info] : found)
+    if (number != *present) add(number, parents.contains(digest_of(file(number))));
+  if (found.contains(*present)) add(*present, true);
+  write_log();
+}
+
 void Versions::settle() {
   for (const auto& target :
        {folder() / "current", folder() / "log.json", file(next()), study_ / "model.elrom"})
     base::remove_remains(target);
+  begin_log();
   take_in();
   const auto order = promoted();
   if (!order.empty() && fs::exists(file(order.back()))) link_current(order.back());

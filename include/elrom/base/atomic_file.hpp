@@ -2,6 +2,7 @@
 // A file that appears whole or not at all: written beside its target, synced, renamed, directory synced.
 
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 namespace elrom::base {
@@ -11,8 +12,8 @@ namespace elrom::base {
 enum class Sync { none, content, all };
 
 /// Owns the temporary path until commit(); without commit the temporary is removed and the target is
-/// untouched. The temporary lies in the target's folder (rename must not cross file systems) and is named
-/// ".<target>.<process id>.<n>.tmp", so two writers never share one.
+/// untouched. The temporary lies in the target's folder (rename must not cross file systems), under a name of
+/// its own (temporary_beside), so two writers never share one.
 class AtomicFile {
  public:
   /// @throws SystemError when the folder does not exist or is not writable
@@ -34,8 +35,14 @@ class AtomicFile {
   bool committed_ = false;
 };
 
+/// Beside `target` and hidden: ".<target>.<process id>.<n>.tmp"; another one each time it is asked for.
+[[nodiscard]] std::filesystem::path temporary_beside(const std::filesystem::path& target);
+
 /// Whole text as `target`, atomically.
 void write_text(const std::filesystem::path& target, std::string_view text);
+/// For a file that long work ends with: makes its folder, and sees that a file can be made there, so that
+/// nobody waits for what cannot be written. @throws SystemError
+void expect_writable(const std::filesystem::path& target);
 /// @throws InputError when it cannot be read
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
@@ -56,5 +63,9 @@ class FileLock {
 /// Temporaries that killed writers of `target` left behind: for
 /// who holds its lock, so that they are nobody's.
 void remove_remains(const std::filesystem::path& target) noexcept;
+/// The same of all targets in a folder that `is_meant` names, for who holds no lock: temporaries, files or
+/// folders, whose process is no more.
+void remove_dead_remains(const std::filesystem::path& folder,
+                         const std::function<bool(std::string_view target_name)>& is_meant);
 
 }  // namespace elrom::base

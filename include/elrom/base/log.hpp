@@ -40,4 +40,7 @@ Log& silent_log();
 /// @param lowest messages below this level are dropped; progress is worth an info
 std::unique_ptr<Log> make_console_log(Level lowest = Level::info);
 
+/// Passes everything on to `log`, but each warning once: for work that is done several times over.
+std::unique_ptr<Log> warn_once(Log& log);
+
 }  // namespace elrom

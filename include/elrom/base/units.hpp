@@ -53,8 +53,10 @@ struct Quantity {
 };
 [[nodiscard]] std::optional<Quantity> split_quantity(std::string_view text);
 
-/// The same in SI; without a symbol it is in SI already. @param si the SI unit of the dimension wanted, "m"
-/// @throws InputError for no number, an unknown unit, a unit of another dimension
+/// In SI; without a symbol it is in SI already. @param si the SI unit of the dimension wanted, "m"
+/// @throws InputError for an unknown unit, a unit of another dimension
+[[nodiscard]] double to_si(const Quantity& given, std::string_view si);
+/// The same of a text. @throws InputError for no number, too
 [[nodiscard]] double quantity(std::string_view text, std::string_view si);
 
 /// "0:20 m/s", "300um:0.4mm"; one value alone is both ends. A unit of the second end is the first's too where

@@ -26,6 +26,10 @@ void write_csv(const model::PredictionFrame& frame, const Coordinates& coordinat
 /// '#' header, then columns of fixed width: x y z and the fields; with profiles z and the fields.
 void write_sfw3d(const model::PredictionFrame& frame, const Coordinates& coordinates,
                  const model::Prediction& prediction, std::string& text);
+/// Names of the fields in a Fluent file: Fluent's own, but for those chosen. @throws UsageError where two are
+/// alike
+void expect_fluent_names_differ(const std::vector<field::FieldInfo>& fields,
+                                const std::map<std::string, std::string>& chosen);
 /// Fluent interpolation file, version 3, text. The places may be others than the frame's: the prediction has
 /// a value of every field for each.
 void write_fluent(const model::PredictionFrame& frame, const Coordinates& coordinates,

@@ -18,6 +18,9 @@ namespace elrom::ingest {
 /// when it cannot be read, or crashes the HDF5 library
 [[nodiscard]] bool is_snapshot_store(const std::filesystem::path& path);
 
+/// Whether a text's first line has headings of an export (read_fluent_ascii), two at least: notes have none.
+[[nodiscard]] bool begins_like_cells(const std::filesystem::path& path);
+
 /// SHA-256 of a case: of its file, or of a directory's files with their names. @throws InputError
 [[nodiscard]] std::string case_digest(const std::filesystem::path& path);
 

@@ -3,7 +3,8 @@
 //
 // A file is finished when two looks find the same size and time of change. What is finished and not in the
 // store (by digest) is imported with all checks, together with what else is finished; what is wrong or
-// suspicious moves to a folder, with the reason beside it (<name>.reason.txt). Imported files stay.
+// suspicious moves to a folder, with the reason beside it (<name>.reason.txt). Imported files stay, and so
+// does what is no export by its ending or its first line.
 
 #include <filesystem>
 #include <functional>
@@ -36,8 +37,9 @@ struct Refusal {
 struct Look {
   std::vector<std::string> added;  ///< cases, in the order in which they entered the store
   std::vector<Refusal> refused;
-  std::size_t n_unfinished = 0;  ///< files that may still be written to
-  std::size_t n_cases = 0;       ///< in the store; 0: none were added
+  std::vector<std::filesystem::path> left_alone;  ///< files that are no exports, each once
+  std::size_t n_unfinished = 0;                   ///< files that may still be written to
+  std::size_t n_cases = 0;                        ///< in the store; 0: none were added
 };
 
 /// Nothing is lost by a crash: the store is replaced whole, and files are known by digest afterwards.
@@ -58,16 +60,19 @@ class Watcher {
   };
   using States = std::map<std::filesystem::path, State>;
 
-  [[nodiscard]] States list() const;
+  [[nodiscard]] States list(std::vector<std::filesystem::path>& others) const;
+  [[nodiscard]] bool is_ours(const std::filesystem::path& path) const;
   [[nodiscard]] static State state_of(const std::filesystem::path& path);
-  [[nodiscard]] std::vector<std::filesystem::path> finished(const States& now);
+  [[nodiscard]] std::vector<std::filesystem::path> finished(const States& now,
+                                                            std::vector<std::filesystem::path>& others);
   void read_store();
   [[nodiscard]] Refusal put_aside(const Refusal& refusal, Log& log) const;
 
   WatchOptions options_;
-  States before_;                   //!< at the last look
-  States settled_;                  //!< known to be in the store, or not to be moved
-  std::set<std::string> in_store_;  //!< digests
+  States before_;                         //!< at the last look
+  States settled_;                        //!< known to be in the store, or not to be moved
+  std::set<std::filesystem::path> told_;  //!< that they are no exports
+  std::set<std::string> in_store_;        //!< digests
 };
 
 }  // namespace elrom::ingest

@@ -1,8 +1,8 @@
 #pragma once
-// Tables as text: one heading line, one record a line. Separated by commas, by semicolons or tabs where the
-// headings have no comma, or by what Excel's first line "sep=;" says; double quotes as in RFC 4180, UTF-8
-// with or without byte order mark, any line ending. Lines and rows without content, and lines that begin
-// with '#', are skipped.
+// Tables as text: one heading line, one record a line. Separated by commas, semicolons or tabs, whichever the
+// headings have most of, or by what Excel's first line "sep=;" says; double quotes as in RFC 4180, any line
+// ending, UTF-8 or, of files, UTF-16 with a byte order mark or Latin-1. Lines and rows without content, and
+// lines that begin with '#', are skipped.
 //
 // Thread rule: plain values and pure functions.
 
@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "elrom/base/units.hpp"
 
 namespace elrom::io {
 
@@ -23,6 +25,9 @@ struct CsvTable {
 
   /// "cases.csv:3, column 'load'"
   [[nodiscard]] std::string place(std::size_t row, std::size_t column) const;
+  /// A cell's number and unit ("180 kg/s"); where commas do not separate, one is a decimal comma.
+  /// @throws InputError for no finite number
+  [[nodiscard]] base::Quantity quantity(std::size_t row, std::size_t column) const;
 };
 
 /// Largest text that the readers of tables and of case files take; anything larger is no such file.
@@ -33,8 +38,8 @@ inline constexpr std::size_t most_text_bytes = std::size_t{64} << 20;
 [[nodiscard]] CsvTable parse_csv(std::string_view text, std::string where);
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& path);
 
-/// The text of a small file, without a byte order mark. @throws
-/// InputError when it is larger than most_text_bytes
+/// The text of a small file in UTF-8, without a byte order mark. @throws InputError when it is larger than
+/// most_text_bytes
 [[nodiscard]] std::string read_small_text(const std::filesystem::path& path);
 
 /// `cell` as the writer puts it: quoted when it must be.

@@ -13,5 +13,7 @@ inline constexpr std::size_t most_unpacked_bytes = std::size_t{4} << 30;
 /// @throws InputError when it cannot be read, is a damaged gzip file, or unpacks to more than `most_bytes`
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& path,
                                          std::size_t most_bytes = most_unpacked_bytes);
+/// The first bytes of it, as many as there are up to `most_bytes`; empty for what cannot be read.
+[[nodiscard]] std::string begin_of_text_file(const std::filesystem::path& path, std::size_t most_bytes);
 
 }  // namespace elrom::io

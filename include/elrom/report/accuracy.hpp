@@ -35,6 +35,7 @@ inline constexpr std::array<double, 4> coverage_levels{0.5, 0.8, 0.9, 0.95};
 struct AccuracyOptions {
   std::filesystem::path study;
   std::optional<std::filesystem::path> store;  ///< instead of the study's
+  std::vector<std::string> cases;  ///< to judge on, names or patterns; empty: those that the study held out
   std::vector<std::filesystem::path> against;  ///< further bundles or studies to show beside the peers
   int n_threads = 1;
   bool figures = false;  ///< slices, profiles and histograms too, for the page

@@ -49,7 +49,8 @@ struct PartCost {
 struct CostOptions {
   std::vector<std::filesystem::path> studies;
   std::optional<std::filesystem::path> store;
-  bool peers = true;  ///< the studies' peers too
+  std::vector<std::string> cases;  ///< to judge on, names or patterns; empty: those that the study held out
+  bool peers = true;               ///< the studies' peers too
   bool sizes =
       false;  ///< and what fits without networks to fewer of the first study's cases cost: add_sizes()
   int n_threads = 1;

@@ -21,6 +21,7 @@ namespace elrom::report {
 struct LearningCurveOptions {
   std::filesystem::path study;
   std::optional<std::filesystem::path> store;
+  std::vector<std::string> cases;  ///< to judge on, names or patterns; empty: those that the study held out
   /// A peer's name; empty: the one that answers for most fields of the study, or the best peer
   std::string method;
   std::vector<std::string> fields;  ///< empty: all of the study

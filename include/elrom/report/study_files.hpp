@@ -28,9 +28,12 @@ struct StudyFiles {
 };
 
 /// @param store instead of the one the settings name
-/// @throws InputError when it is no trained study (what is missing, and the command that makes it)
+/// @param cases names or patterns of cases to judge on, instead of those that the study held out; empty: none
+/// @throws InputError when it is no trained study (what is missing, and the command that makes it);
+///         UsageError for cases that the store does not hold, or that the study was trained on
 [[nodiscard]] StudyFiles open_study(const std::filesystem::path& directory,
-                                    const std::optional<std::filesystem::path>& store = {});
+                                    const std::optional<std::filesystem::path>& store = {},
+                                    const std::vector<std::string>& cases = {});
 
 /// Bundles of `path`: a bundle file, or a study directory's model.
 [[nodiscard]] BundleFile open_other(const std::filesystem::path& path);

@@ -29,6 +29,9 @@ struct RetrainReport {
   std::optional<double> seconds_from_nothing;  ///< of the last run that reused no model; nothing: not known
   /// The present bundle was trained on these cases with these settings: nothing was made.
   bool nothing_new = false;
+  /// A version was there that was trained on these cases with these settings: the gate was asked about it
+  /// again, and nothing was made.
+  bool made_before = false;
   Promotion promotion = {};                 ///< its verdict: the errors before and after, field by field
   std::optional<CaseEffects> effects = {};  ///< of the new cases, where there are any
   [[nodiscard]] bool promoted() const { return !nothing_new && promotion.kind != Promotion::Kind::refused; }

@@ -79,6 +79,11 @@ class Study {
   [[nodiscard]] const std::vector<std::size_t>& held_out() const;
   /// Rows that the gate goes by.
   [[nodiscard]] GateCases gate_cases() const;
+  /// A version, other than the present one, that was trained on these very cases with these settings;
+  /// nothing: there is none.
+  [[nodiscard]] std::optional<int> version_of_these() const;
+  /// Asks the gate about such a version, as fit() does about what it made: promotion() tells.
+  void judge_again(int version);
   /// Whether a bundle was trained on these very cases with these settings: nothing new could be learned.
   [[nodiscard]] bool is_of_this_study(const model::BundleInfo& bundle) const;
   /// Retraining: fit() begins at this bundle where a method can, and tries those candidates again that had a

@@ -7,7 +7,8 @@
 //   STUDY/models/log.json    every event, oldest first (data/FORMATS.md, kind "elrom-versions")
 //
 // An event is in the log before the link moves: whoever opens the versions next moves it to where the log
-// says, so that a process that ends between the two loses nothing. A study that has a file `model.elrom`
+// says, so that a process that ends between the two loses nothing. A log that is lost begins anew with the
+// versions that are there. A study that has a file `model.elrom`
 // from before there were versions, or that somebody copied a bundle to, has it taken in as a version.
 //
 // Thread rule: one thread at a time; whatever changes something holds the study's lock (STUDY/.lock).
@@ -49,6 +50,12 @@ class Versions {
   [[nodiscard]] const std::vector<VersionEvent>& log() const { return events_; }
   /// The last event that judged or made the version; nullptr: the log does not know it.
   [[nodiscard]] const VersionEvent* last_of(int number) const;
+  /// Whether the log's last word on a version is this: refused by the same verdict, beside the same present
+  /// one.
+  [[nodiscard]] bool is_known(const VersionEvent& event) const;
+  /// There are versions and no log: settle() begins one anew with them.
+  [[nodiscard]] bool has_lost_its_log() const;
+  [[nodiscard]] std::string lost_log_sentence() const;
   /// Appends to the log and, where the event promotes, moves the link. Fills in parent, digest and n_cases.
   void record(VersionEvent event);
   /// What was current before the present one; going back twice goes back two. Nothing: it is the first.
@@ -58,6 +65,7 @@ class Versions {
   [[nodiscard]] std::filesystem::path folder() const { return study_ / "models"; }
   [[nodiscard]] std::vector<int> promoted() const;
   void take_in();
+  void begin_log();
   void write_log() const;
   void link_current(int number) const;
 
