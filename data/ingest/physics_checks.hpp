@@ -10,6 +10,7 @@
 // (model::growth_for_few), and below eight of them physics alone judges.
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,6 +36,9 @@ struct PhysicsView {
     return [this](std::size_t cell) { return volume(cell); };
   }
 };
+
+/// The least spread of a reading that physics judges, and no other case.
+inline constexpr double physics_alone = std::numeric_limits<double>::infinity();
 
 // The checks. Each leaves out what the case lacks the quantities for.
 [[nodiscard]] std::vector<Reading> read_gas_balance(const PhysicsView& view);

@@ -17,7 +17,6 @@ namespace {
 constexpr double least_scatter = 1e-6;
 // Of the 64 shipped training cases, the solids' velocities keep 1.6 % on a mesh of 300 cells, 8 % on 55,440.
 constexpr double least_own = 1e-3;
-constexpr double physics_alone = std::numeric_limits<double>::infinity();
 
 /// Standard deviation over root mean square; 0 where all cells are equal.
 double scatter(std::span<const float> cells) {

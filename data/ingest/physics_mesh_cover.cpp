@@ -9,8 +9,6 @@
 namespace elrom::ingest {
 namespace {
 
-constexpr double physics_alone = std::numeric_limits<double>::infinity();
-
 Reading reading(const std::string& what, double value, double low, double high, double least_spread) {
   return {.check = "mesh_cover",
           .what = what,
