@@ -19,12 +19,13 @@ namespace {
 constexpr base::EnumNames<Verdict, 3> verdicts{
     "verdict", {{Verdict::inside, "inside"}, {Verdict::edge, "edge"}, {Verdict::outside, "outside"}}};
 constexpr std::size_t n_nearest = 3;
-constexpr double edge_margin = 0.1;        // trained widths between edge and outside
-constexpr double most_edge_excess = 0.25;  // trained widths: beyond it a case is at the edge in any event
-constexpr double edge_share = 0.01;        // of the training cases, by range and by distance: edge
-constexpr double least_share = 0.05;       // what few cases cannot tell from chance is no edge
-constexpr double outside_distance = 1.5;   // times the loneliest training case's distance: outside
-constexpr double rounding = 1e-9;          // relative: unit conversions must not push a case out of range
+constexpr double edge_margin = 0.1;       // trained widths between edge and outside
+constexpr double outside_excess = 0.2;    // trained widths: beyond it a case is outside in any event
+constexpr double edge_share = 0.01;       // of the training cases, by range and by distance: edge
+constexpr double least_share = 0.05;      // what few cases cannot tell from chance is no edge
+constexpr double edge_distance = 1.1;     // times the loneliest training case's distance: edge
+constexpr double outside_distance = 1.5;  // the same: outside
+constexpr double rounding = 1e-9;         // relative: unit conversions must not push a case out of range
 constexpr double farthest_difference = 1e150;
 constexpr double constant_scale = 1e-2;  // of its value: the unit of distance for an input that never changed
 
@@ -86,11 +87,15 @@ double joint_distance(const std::vector<double>& distances, const std::vector<st
   return nearest.empty() ? 0 : sum / static_cast<double>(nearest.size());
 }
 
+/// "primary_air 225 kg/s (trained 150 to 212, 21 % of that width outside)"
 std::string range_text(const field::InputInfo& info, double value, const Range& range) {
   const auto& unit = base::unit(info.display_unit.empty() ? info.unit : info.display_unit);
   const auto show = [&](double si) { return base::rounded(unit.from_si(si)); };
+  const auto width = std::isfinite(range.excess(value))
+                         ? ", " + base::rounded(100 * range.excess(value), 2) + " % of that width outside"
+                         : std::string();
   return info.name + " " + show(value) + " " + unit.symbol + " (trained " + show(range.low) + " to " +
-         show(range.high) + ")";
+         show(range.high) + width + ")";
 }
 
 /// ' and 2 other inputs'
@@ -116,7 +121,8 @@ std::string reason_text(const Assessment& assessment, Verdict range, double lone
   if (range == Verdict::edge) return range_reason(assessment, "just outside");
   if (assessment.verdict == Verdict::inside) {
     return (assessment.out_of_range.empty() ? "every input is in its trained range"
-                                            : range_reason(assessment, "within a hair of")) +
+                                            : range_reason(assessment, "no farther outside") +
+                                                  " than training cases lie outside the others'") +
            " and the case is as near to training cases as they are to each other";
   }
   const std::string distance = base::rounded(assessment.distance, 3);
@@ -166,8 +172,9 @@ void Guard::learn_inputs() {
   }
   const double rare = std::min(math::conformal_quantile(excess, 1 - edge_share), std::ranges::max(excess));
   const bool enough = 1 / (static_cast<double>(excess.size()) + 1) < least_share;
-  edge_excess_ = enough ? std::min(rare, most_edge_excess) : 0;
-  line_ = OperatingLine(inputs_);
+  edge_excess_ = enough ? std::min(rare, outside_excess) : 0;
+  const auto n_flagged = std::ranges::count_if(excess, [&](double one) { return one > edge_excess_; });
+  line_ = OperatingLine(inputs_, static_cast<std::size_t>(n_flagged));
 }
 
 void Guard::hold(std::span<const double> inputs, std::span<double> held) const {
@@ -196,16 +203,18 @@ Assessment Guard::assess(std::span<const double> inputs) const {
 }
 
 Verdict Guard::judge_ranges(std::span<const double> inputs, std::vector<std::string>& out_of_range) const {
-  double worst = 0;
+  std::vector<std::pair<double, std::string>> found;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Range range{low_[i], high_[i]};
     const double excess = range.excess(inputs[i]);
-    if (excess > 0) out_of_range.push_back(range_text(schema_[i], inputs[i], range));
-    worst = std::max(worst, excess);
+    if (excess > 0) found.emplace_back(-excess, range_text(schema_[i], inputs[i], range));
   }
-  return worst > edge_excess_ + edge_margin ? Verdict::outside
-         : worst > edge_excess_             ? Verdict::edge
-                                            : Verdict::inside;
+  std::ranges::sort(found);
+  const double worst = found.empty() ? 0 : -found.front().first;
+  for (auto& [excess, text] : found) out_of_range.push_back(std::move(text));
+  return worst > std::min(edge_excess_ + edge_margin, outside_excess) ? Verdict::outside
+         : worst > edge_excess_                                       ? Verdict::edge
+                                                                      : Verdict::inside;
 }
 
 Verdict Guard::judge_line(std::span<const double> inputs, std::vector<std::string>& unusual) const {
@@ -230,7 +239,7 @@ Verdict Guard::judge_distance(Assessment& result) const {
   result.p_value = (n_as_far + 1) / (n + 1);
   if (result.distance > outside_distance * self_distance_.back()) return Verdict::outside;
   const bool rare = result.p_value < least_share && n_as_far < std::max(1.0, edge_share * n);
-  return rare ? Verdict::edge : Verdict::inside;
+  return rare && result.distance > edge_distance * self_distance_.back() ? Verdict::edge : Verdict::inside;
 }
 
 void Guard::save(io::TensorFile& file, const std::string& prefix) const {

@@ -20,8 +20,9 @@ constexpr double constant = 1e-9;         // relative scatter of an input that d
 constexpr double least_noise = 1e-3;      // of an input's variance, so that no input rules all others
 constexpr double least_deviation = 1e-2;  // of an input's scatter: inputs that always moved together
 constexpr double least_growth = 0.3;      // far along the line the deviation stays above this share
-constexpr double usual_share = 0.025, most_share = 0.05;
+constexpr double usual_share = 0.025;
 constexpr double wanted_limit = 2.3;  // an input 3 deviations off is then found nine times in ten
+constexpr double few_for_limit = 8;   // cases that make the wanted limit twice as wide
 constexpr double far_beyond = 1.6;    // times the limit
 constexpr double never = std::numeric_limits<double>::infinity();
 
@@ -101,12 +102,12 @@ struct ScatterGrowth {
   }
 };
 
-double limit_of(std::vector<double> farthest) {
+double limit_of(std::vector<double> farthest, std::size_t most_beyond) {
   std::ranges::sort(farthest);
-  const auto most = static_cast<std::size_t>(most_share * static_cast<double>(farthest.size()));
-  const double least = farthest[farthest.size() - 1 - most];  // not more than `most` cases exceed it
+  const auto n = farthest.size();
+  const double least = farthest[n - 1 - std::min(most_beyond, n - 1)];  // not more cases exceed it
   const double usual = std::min(math::conformal_quantile(farthest, 1 - usual_share), farthest.back());
-  return std::min(usual, std::max(wanted_limit, least));
+  return std::min(usual, std::max(wanted_limit * growth_for_few(n, few_for_limit), least));
 }
 
 }  // namespace
@@ -129,6 +130,11 @@ struct OperatingLine::Learned {
   }
 };
 
+std::size_t most_flagged(std::size_t n_cases) {
+  const double most = std::floor(most_flagged_share * static_cast<double>(n_cases + 1)) - 1;
+  return most > 0 ? static_cast<std::size_t>(most) : 0;
+}
+
 double growth_for_few(std::size_t n_cases, double few) {
   const double share = few / static_cast<double>(n_cases);
   return 1 + share * share;
@@ -138,7 +144,7 @@ double UsualInput::distance(double given) const {
   return std::isfinite(deviation) ? std::abs(given - value) / deviation : 0;
 }
 
-OperatingLine::OperatingLine(const MatrixD& inputs) {
+OperatingLine::OperatingLine(const MatrixD& inputs, std::size_t n_flagged) {
   if (static_cast<std::size_t>(inputs.rows()) < fewest_cases) return;
   const Row mean = inputs.colwise().mean();
   const Row scale = (inputs.rowwise() - mean).cwiseAbs2().colwise().mean().cwiseSqrt();
@@ -170,7 +176,8 @@ OperatingLine::OperatingLine(const MatrixD& inputs) {
     const Row deviation = ScatterGrowth(expected, left, i).at(expected.row(i));
     farthest.push_back(left.row(i).cwiseQuotient(deviation).cwiseAbs().maxCoeff());
   }
-  limit_ = limit_of(std::move(farthest));
+  const auto most = most_flagged(farthest.size());
+  limit_ = limit_of(std::move(farthest), most - std::min(most, n_flagged));
 }
 
 double OperatingLine::far_limit() const {

@@ -77,6 +77,33 @@ TEST(Guard, JustBeyondTheRangeIsEdge) {
   EXPECT_EQ(result.verdict, Verdict::edge);
 }
 
+// Few cases lie far outside each other's range, and so once told nothing of one that lies 22 % outside theirs.
+TEST(Guard, AFifthOfTheTrainedWidthOutsideIsOutsideHoweverFewCasesTell) {
+  Cases cases;
+  cases.inputs.col(2).setConstant(100e-6);
+  cases.inputs(20, 2) = 200e-6;  // a whole width outside the others' range
+  const auto at = [&](double d50) { return cases.guard().assess(std::array{140.0, 14.0, d50}); };
+
+  EXPECT_NE(at(219e-6).verdict, Verdict::outside) << at(219e-6).reason;
+  const auto result = at(222e-6);
+  EXPECT_EQ(result.verdict, Verdict::outside);
+  EXPECT_THAT(result.reason,
+              HasSubstr("d50 222 um (trained 100 to 200, 22 % of that width outside) lies outside"));
+}
+
+TEST(Guard, SaysHowFarOutsideTheRangeAnInsideCaseLies) {
+  Cases cases;
+  base::Random random(base::Seed(5));
+  for (Eigen::Index i = 0; i < cases.inputs.rows(); ++i) cases.inputs(i, 2) = random.uniform(100e-6, 200e-6);
+  cases.inputs.col(2).tail(2) << 80e-6, 220e-6;
+  const auto result = cases.guard().assess(std::array{140.0, 14.0, 224.2e-6});
+
+  EXPECT_EQ(result.verdict, Verdict::inside);
+  EXPECT_THAT(result.reason,
+              HasSubstr("(trained 80 to 220, 3 % of that width outside) lies no farther outside "
+                        "the trained range than training cases lie outside the others'"));
+}
+
 TEST(Guard, AnUnusualCombinationOfInputsInRangeIsOutside) {
   const auto result = Cases().guard().assess(std::array{100.0, 19.0, 180e-6});
 

@@ -86,6 +86,18 @@ TEST(OperatingLine, FewCasesNeedWiderLimits) {
   EXPECT_NEAR(many.far_limit() / many.limit(), 1.616, 1e-12);
 }
 
+// Of n cases k, so that (k + 1) / (n + 1) is at most 5 %.
+TEST(OperatingLine, FewCasesMayBeFlagged) {
+  EXPECT_EQ(most_flagged(18), 0U);
+  EXPECT_EQ(most_flagged(64), 2U);
+  EXPECT_EQ(most_flagged(199), 9U);
+}
+
+TEST(OperatingLine, CasesFlaggedForOtherReasonsLeaveLessRoom) {
+  const auto cases = plant(199, 9);
+  EXPECT_GT(OperatingLine(cases, 9).limit(), OperatingLine(cases).limit());
+}
+
 TEST(OperatingLine, ALearnedCaseIsJudgedByTheOthersAlone) {
   auto inputs = plant(40, 5);
   const double usual = OperatingLine(inputs).left_out(7)[4].value;

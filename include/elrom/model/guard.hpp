@@ -23,8 +23,9 @@ struct Neighbour {
 
 struct Assessment {
   Verdict verdict = Verdict::inside;
-  std::string reason;                     ///< one sentence, with the user's units
-  std::vector<std::string> out_of_range;  ///< "primary_air 250 kg/s (trained 150 to 212)"
+  std::string reason;  ///< one sentence, with the user's units
+  std::vector<std::string>
+      out_of_range;  ///< "primary_air 225 kg/s (trained 150 to 212, 21 % of that width outside)", the worst first
   /// "primary_air 225 kg/s: 177 +- 11 kg/s is usual with these other inputs", the most unusual first
   std::vector<std::string> unusual;
   double distance = 0;  ///< joint distance to the training cases

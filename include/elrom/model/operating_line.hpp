@@ -27,6 +27,12 @@ namespace elrom::model {
 /// 1 + (few / n)^2. Chosen on stores of 8 to 64 of the 64 shipped training cases, drawn at random.
 [[nodiscard]] double growth_for_few(std::size_t n_cases, double few = 20);
 
+/// Of cases like the learned ones, not more than this share is to be flagged.
+inline constexpr double most_flagged_share = 0.05;
+/// How many of n cases, each judged by the others, may be flagged, so that one more case like them is
+/// flagged with at most this probability: k with (k + 1) / (n + 1) <= share (split conformal prediction).
+[[nodiscard]] std::size_t most_flagged(std::size_t n_cases);
+
 /// Of one input, SI: "177 +- 11 is usual".
 struct UsualInput {
   double value = 0;      ///< conditional mean
@@ -43,13 +49,14 @@ class OperatingLine {
   /// Knows nothing: all is usual.
   OperatingLine() = default;
   /// @param inputs finite, (n_cases, n_inputs). An input that never changes has no say.
-  explicit OperatingLine(const MatrixD& inputs);
+  /// @param n_flagged cases that are flagged for other reasons, when each is judged by the others
+  explicit OperatingLine(const MatrixD& inputs, std::size_t n_flagged = 0);
 
   [[nodiscard]] bool knows() const { return learned_ != nullptr; }
   /// Of every input, given all the others, (n_inputs). @param inputs finite, (n_inputs)
   [[nodiscard]] std::vector<UsualInput> usual(std::span<const double> inputs) const;
   /// Deviations from which on an input is unusual: what 2.5 % of the learned cases exceed when each is judged
-  /// by the others, or less, down to 2.3, as long as not more than 5 % exceed it.
+  /// by the others, or less, down to 2.3 (1 + (8 / n)^2), as long as not more than most_flagged() are flagged.
   [[nodiscard]] double limit() const { return limit_; }
   /// Deviations from which on no healthy case was met: 1.6 times the limit, more of few cases.
   [[nodiscard]] double far_limit() const;
