@@ -94,7 +94,7 @@ TEST(AccuracyOfAChangedStore, CasesThatLeftItAreNoDeadEnd) {
   field::remove_cases(study.folder() / "snapshots.h5", {"load_13", "train_3"});
   test::RecordingLog log;
 
-  EXPECT_ERROR(InputError, "does not hold case 'load_13', which the study held out",
+  EXPECT_ERROR(InputError, "case 'load_13', which the study held out, is missing in ",
                evaluate({.study = study.folder()}, log));
   EXPECT_ERROR(InputError, "judge on others by --cases", evaluate({.study = study.folder()}, log));
   EXPECT_ERROR(UsageError, "trained on case 'train_1'",

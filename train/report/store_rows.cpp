@@ -29,7 +29,7 @@ std::vector<std::size_t> judging_rows(const field::SnapshotStore& store,
   for (const auto& name : names) {
     const auto found = store.find(name);
     if (found.size() != 1)
-      throw InputError({.what = "the store does not hold case '" + name + "', which the study held out",
+      throw InputError({.what = "case '" + name + "', which the study held out, is missing",
                         .where = store.path().string(),
                         .advice = "judge on others by --cases, or name a store that holds it by --store"});
     rows.push_back(found.front());
