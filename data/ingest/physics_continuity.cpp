@@ -11,8 +11,8 @@
 namespace elrom::ingest {
 namespace {
 
-// The 64 shipped training cases have 0.40 to 0.49 on 55,440 cells, more on the CFD's mesh and on a coarse one:
-// differences over cells see less than all. Half of the least is wrong; without continuity it is 0.
+// The 64 shipped training cases have 0.40 to 0.49 on 55,440 cells, more on the CFD's mesh and on a coarse
+// one: differences over cells see less than all. Half of the least is wrong; without continuity it is 0.
 constexpr double least_correlation = 0.2;
 
 /// Of every column the nearest ones towards either side along an axis; itself at a wall.

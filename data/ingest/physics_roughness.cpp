@@ -1,8 +1,8 @@
 // How much a field changes from cell to cell, beside how much it changes at all: the mean squared difference
 // of neighbours over twice the variance (von Neumann 1941). Near 1 where cells know nothing of their
 // neighbours: a field whose cells lost their places. Resampling to a finer mesh smooths; so the share of the
-// variance that lies within coarse boxes is read too: of such a field nearly all, on any mesh. An instant in the
-// place of an average is rougher in all velocities at once.
+// variance that lies within coarse boxes is read too: of such a field nearly all, on any mesh. An instant in
+// the place of an average is rougher in all velocities at once.
 
 #include <fmt/format.h>
 

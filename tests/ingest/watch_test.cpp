@@ -134,7 +134,7 @@ TEST_F(Watching, OtherFilesAreNotTouched) {
   Watcher watcher(options_);
   deliver("train_000");
   fs::copy_file(ELROM_SOURCE_DIR "/data/cases/cases.csv", options_.folder / "cases.csv");
-  test::write_bytes(options_.folder / "notes.md", "x");
+  test::write_bytes(options_.folder / "remarks", "x");
   test::write_bytes(options_.folder / "README.txt",
                     "Exports of the furnace, as they come.\n\nx and y in m.\n");
   test::write_bytes(options_.folder / "solver.dat", "iteration residual\n1 0.5\n");
@@ -145,18 +145,18 @@ TEST_F(Watching, OtherFilesAreNotTouched) {
 
   EXPECT_THAT(look.refused, IsEmpty());
   EXPECT_THAT(look.added, ElementsAre("train_000"));
-  for (const auto* name : {"cases.csv", "notes.md", "README.txt", "solver.dat"})
+  for (const auto* name : {"cases.csv", "remarks", "README.txt", "solver.dat"})
     EXPECT_TRUE(fs::exists(options_.folder / name)) << name;
 }
 
 TEST_F(Watching, WhatIsNoExportIsNamedOnceAndATableThatIsOneIsRefused) {
   Watcher watcher(options_);
-  test::write_bytes(options_.folder / "notes.md", "x");
+  test::write_bytes(options_.folder / "remarks", "x");
   test::write_bytes(options_.folder / "README.txt", "Exports of the furnace, as they come.\n");
   test::write_bytes(options_.folder / "broken.txt", "x-coordinate, y-coordinate, pressure\n1, 2\n");
   const auto first = watcher.look(log_), second = watcher.look(log_), third = watcher.look(log_);
 
-  EXPECT_THAT(first.left_alone, ElementsAre(options_.folder / "notes.md"));
+  EXPECT_THAT(first.left_alone, ElementsAre(options_.folder / "remarks"));
   EXPECT_THAT(second.left_alone, ElementsAre(options_.folder / "README.txt"));
   EXPECT_THAT(third.left_alone, IsEmpty());
   ASSERT_EQ(second.refused.size(), 1U);

@@ -77,7 +77,7 @@ TEST(Guard, JustBeyondTheRangeIsEdge) {
   EXPECT_EQ(result.verdict, Verdict::edge);
 }
 
-// Few cases lie far outside each other's range, and so once told nothing of one that lies 22 % outside theirs.
+// Few cases lie far outside each other's range, and once told nothing of one that lies 22 % outside theirs.
 TEST(Guard, AFifthOfTheTrainedWidthOutsideIsOutsideHoweverFewCasesTell) {
   Cases cases;
   cases.inputs.col(2).setConstant(100e-6);
