@@ -70,8 +70,8 @@ class Drag final : public Effect {
     set(state.push, i, (1 / dt) * (last - v));
   }
   [[nodiscard]] double rate(const Particles& p, std::size_t i, const Vec& slip) const {
-    const double speed = law_ == DragLaw::stokes ? 0 : std::sqrt(dot(slip, slip));
-    return particle::drag_rate(p.diameter[i], speed, gas_) / p.mass[i];
+    const double speed = std::sqrt(dot(slip, slip));
+    return particle::drag_rate(law_, p.diameter[i], speed, 1, gas_) / p.mass[i];
   }
   static Vec moved(const Vec& v, const Vec& gas, const Vec& others, double rate, double dt) {
     const Vec limit = gas + (1 / rate) * others;

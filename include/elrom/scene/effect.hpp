@@ -45,9 +45,8 @@ class Effect {
 /// Weight of the gas that a sphere displaces. @param gas_density kg/m3
 [[nodiscard]] std::unique_ptr<Effect> buoyancy(const Vec& gravity, double gas_density);
 
-enum class DragLaw { stokes, schiller_naumann };
-inline constexpr base::EnumNames<DragLaw, 2> drag_names{
-    "drag law", {{DragLaw::stokes, "stokes"}, {DragLaw::schiller_naumann, "schiller_naumann"}}};
+using particle::drag_names;
+using particle::DragLaw;
 /// After all other forces: with rate b = drag / mass and the others' acceleration a, the velocity moves
 /// towards u + a/b as exp(-b t), which is exact for a constant rate and has the right rest state at any step.
 /// @param field lives longer

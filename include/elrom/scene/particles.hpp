@@ -53,6 +53,8 @@ struct Particles {
   bool rotates = false, remembers_hits = false;
 
   [[nodiscard]] std::size_t size() const { return id.size(); }
+  /// At which two of them collide, m.
+  [[nodiscard]] const std::vector<double>& contact_diameter() const { return diameter; }
   void add(const Sphere& sphere);
   /// Copy of one. @param i < size()
   [[nodiscard]] Sphere sphere(std::size_t i) const;
