@@ -204,7 +204,7 @@ TEST(SceneOpenings, LatticeIsDenserThanChance) {
 }
 
 const std::string busy =
-    "[domain]\noutlets = [\"box.z_high\"]\n[gas]\nmodel = \"uniform\"\nvelocity = [0, 0, 3]\n[output]\nevery = 0.002\n"
+    "[grid]\ncell = [0.005, 0.005, 0.005]\n[domain]\noutlets = [\"box.z_high\"]\n[gas]\nmodel = \"uniform\"\nvelocity = [0, 0, 3]\n[output]\nevery = 0.002\n"
     "checkpoint_every = 0.002\n[effects]\ndrag = \"schiller_naumann\"\ngravity = [0, 0, -9.81]\nrecirculation = \"bottom\"\nrotation = true\n";
 
 class SceneResume : public testing::TestWithParam<const char*> {
@@ -231,7 +231,7 @@ TEST_P(SceneResume, EndsInTheSameBytesAndThreadsToo) {
   EXPECT_GT(test::read_bytes(folder / "whole" / "checkpoint.elrom").size(), 10000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(, SceneResume, testing::Values("none", "dem", "helscm", "helscm_document"));
+INSTANTIATE_TEST_SUITE_P(, SceneResume, testing::Values("none", "dem", "hel", "helscm", "helscm_document"));
 
 TEST(SceneCheckpoint, OfAnotherSceneOrDamagedIsRefused) {
   Simulation one(scene("", 5), 1), other(scene("", 6), 1);

@@ -27,6 +27,7 @@ struct GranularLaw {
   double packing = 0.63;        ///< eps_max
   double friction_from = 0.61;  ///< eps_min
   double friction_angle = 0.5;  ///< rad, of Schaeffer's viscosity
+  bool damping = true;          ///< whether collisions even out velocities within a cell
   RadialLaw radial = RadialLaw::lun;
   FlightViscosity viscosity = FlightViscosity::gidaspow;
 };
