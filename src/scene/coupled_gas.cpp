@@ -76,17 +76,17 @@ class CoupledGas final : public Effect {
   void load(const Particles& p) {
     for (auto* values : {&load_.solids, &load_.solids_flux, &load_.exchange, &load_.exchange_flux})
       for (auto& component : *values) std::ranges::fill(component, 0);
-    const double per_volume = 1 / flow_.grid().volume();
     for (std::size_t i = 0; i < p.size(); ++i) {
       const auto& s = sides_[i];
-      const double volume = p.volume(i) * per_volume, spheres = p.are_parcels ? p.weight[i] : 1;
+      const double spheres = p.are_parcels ? p.weight[i] : 1;
       const std::array<double, 3> expected{s.expected.x, s.expected.y, s.expected.z};
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t k = 0; k < 8; ++k) {
           const auto f = static_cast<std::size_t>(s.faces[a].of[k]);
-          const double weight = s.faces[a].weight[k], exchange = weight * spheres * s.answer * per_volume;
-          load_.solids[a][f] += weight * volume;
-          load_.solids_flux[a][f] += weight * volume * p.velocity[a][i];
+          const double share = s.faces[a].weight[k] / flow_.grid().face_volume(a, f);
+          const double volume = share * p.volume(i), exchange = share * spheres * s.answer;
+          load_.solids[a][f] += volume;
+          load_.solids_flux[a][f] += volume * p.velocity[a][i];
           load_.exchange[a][f] += exchange;
           load_.exchange_flux[a][f] += exchange * expected[a];
         }

@@ -9,9 +9,10 @@
 namespace elrom::scene {
 namespace {
 
-constexpr double tolerance = 1e-9;      // of the pressure's equation
-constexpr double courant = 0.5;         // cells that the gas crosses in a step at most
-constexpr double most_diffusion = 0.2;  // of a face's velocity to its neighbours, along each axis
+constexpr double tolerance = 1e-9;  // of the pressure's equation
+constexpr double courant = 4;       // cells that the gas crosses in a step at most, for accuracy
+constexpr int most_sweeps = 30;     // of the velocities' equation,
+constexpr double enough = 1e-7;     // or until they change by so little
 constexpr double least_voidage = 0.3;
 constexpr std::int32_t none = CellGrid::none;
 
@@ -176,26 +177,24 @@ GasLoad GasFlow::no_load() const {
   return load;
 }
 
-double GasFlow::step_that_holds(double dt) const {
-  double rate = 0, diffusion = 0;
+double GasFlow::step_of(double dt) const {
+  double rate = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     double fastest = 0;
     for (const double u : velocity_[a]) fastest = std::max(fastest, std::abs(u));
-    const double h = grid_->step()[a];
-    rate += fastest / h;
-    diffusion = std::max(diffusion, gas_.viscosity / gas_.density / (h * h));
+    rate += fastest / grid_->step()[a];
   }
   if (!(rate < 1e15))
     throw NumericalError(
         Problem{.what = "the gas's speed is no number any more", .advice = "take a shorter time step"});
-  return dt / std::max(1.0, std::ceil(dt * std::max(rate / courant, diffusion / most_diffusion)));
+  return dt / std::max(1.0, std::ceil(dt * rate / courant));
 }
 
 void GasFlow::advance(double dt, const GasLoad& load) {
   for (auto& values : mean_) std::ranges::fill(values, 0);
   n_steps_ = 0;
   for (double left = dt; left > 1e-9 * dt;) {
-    const double h = std::min(left, step_that_holds(left));
+    const double h = std::min(left, step_of(left));
     step(h, load);
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t f = 0; f < mean_[a].size(); ++f) mean_[a][f] += h / dt * velocity_[a][f];
@@ -217,60 +216,92 @@ double GasFlow::drop(const Face& face, const std::vector<double>& p) const {
 
 void GasFlow::step(double dt, const GasLoad& load) {
   foresee(dt, load);
-  project(dt, load);
+  project(load);
 }
 
-// Acceleration by convection and viscosity.
-double GasFlow::change(const Face& face, const FaceValues& u) const {
-  const double own = u[face.axis][face.number], nu = gas_.viscosity / gas_.density;
-  double sum = 0;
+// What a face's velocity takes from those around it by convection and viscosity, 1/s each.
+struct GasFlow::Links {
+  std::array<std::int32_t, 6> number;  // of faces along the same axis; none: a wall, or nothing
+  std::array<double, 6> rate;
+  double sum = 0, wall = 0;  // sum of rates; 1/s times the walls' velocity
+};
+
+GasFlow::Links GasFlow::links(const Face& face, const FaceValues& u) const {
+  Links links;
+  const double nu = gas_.viscosity / gas_.density;
   for (std::size_t b = 0; b < 3; ++b) {
     const double h = grid_->step()[b];
-    std::array<double, 2> near;
-    double speed = own;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto number = b == face.axis ? face.along[k] : face.beside[b][k];
-      if (number != none)
-        near[k] = u[face.axis][static_cast<std::size_t>(number)];
-      else
-        near[k] = b == face.axis ? own : 2 * face.wall[b][k] - own;
-    }
+    double speed = u[face.axis][face.number];
     if (b != face.axis) {
       speed = 0;
       for (const auto number : face.cross[b]) speed += 0.25 * u[b][static_cast<std::size_t>(number)];
     }
-    const double spread = std::max(nu, 0.5 * std::abs(speed) * h);
-    sum += -speed * (near[1] - near[0]) / (2 * h) + spread * (near[1] - 2 * own + near[0]) / (h * h);
+    const double spread = std::max(nu, 0.5 * std::abs(speed) * h) / (h * h);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double rate = spread + (k == 0 ? 0.5 : -0.5) * speed / h;
+      const auto number = b == face.axis ? face.along[k] : face.beside[b][k];
+      const bool is_wall =
+          number == none && b != face.axis;  // half a cell away, where the gas stands with it
+      links.number[2 * b + k] = number;
+      links.rate[2 * b + k] = number == none ? 0 : rate;
+      links.sum += is_wall ? 2 * rate : links.rate[2 * b + k];
+      links.wall += is_wall ? 2 * rate * face.wall[b][k] : 0;
+    }
   }
-  return sum;
+  return links;
 }
 
-// Velocities with the pressure of before.
+// Velocities with the pressure of before; convection and viscosity at the end of the step, by sweeps to and
+// fro, each of which keeps what it finds between the values around.
 void GasFlow::foresee(double dt, const GasLoad& load) {
   before_ = velocity_;
-  for (const auto& face : faces_) {
-    const auto a = face.axis, f = face.number;
+  std::vector<Links> around(faces_.size());
+  for (std::size_t k = 0; k < faces_.size(); ++k) {
+    const auto& face = faces_[k];
     const double eps = gap(face, load);
     if (face.kind == Face::Kind::inlet) {
-      velocity_[a][f] = face.inflow / eps;
+      velocity_[face.axis][face.number] = face.inflow / eps;
       continue;
     }
-    const double inertia = gas_.density * eps / dt;
-    hold_[a][f] = inertia + load.exchange[a][f];
-    velocity_[a][f] = (inertia * (before_[a][f] + dt * change(face, before_)) + load.exchange_flux[a][f] +
-                       eps * (force_[a] - drop(face, pressure_))) /
-                      hold_[a][f];
+    hold_[face.axis][face.number] = gas_.density * eps / dt + load.exchange[face.axis][face.number];
+    around[k] = links(face, before_);
   }
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    double change = 0, largest = 0;
+    for (std::size_t n = 0; n < faces_.size(); ++n) {
+      const auto k = sweep % 2 == 0 ? n : faces_.size() - 1 - n;
+      if (faces_[k].kind == Face::Kind::inlet) continue;
+      double& own = velocity_[faces_[k].axis][faces_[k].number];
+      const double found = foreseen(faces_[k], around[k], dt, load);
+      change = std::max(change, std::abs(found - own)), largest = std::max(largest, std::abs(found));
+      own = found;
+    }
+    if (change <= enough * largest) break;
+  }
+}
+
+double GasFlow::foreseen(const Face& face, const Links& around, double dt, const GasLoad& load) const {
+  const auto a = face.axis, f = face.number;
+  const double eps = gap(face, load), inertia = gas_.density * eps / dt;
+  double carried = around.wall;
+  for (std::size_t k = 0; k < 6; ++k)
+    if (around.number[k] != none)
+      carried += around.rate[k] * velocity_[a][static_cast<std::size_t>(around.number[k])];
+  return (inertia * (before_[a][f] + dt * carried) + load.exchange_flux[a][f] +
+          eps * (force_[a] - drop(face, pressure_))) /
+         (hold_[a][f] + inertia * dt * around.sum);
 }
 
 // The change of pressure that lets gas and solids fill space.
-void GasFlow::project(double, const GasLoad& load) {
+void GasFlow::project(const GasLoad& load) {
   auto& [equation, solver] = *equation_;
   equation.clear();
   for (const auto& face : faces_) {
     const auto a = face.axis, f = face.number;
     const double eps = gap(face, load), area = grid_->volume() / grid_->step()[a];
-    const double flux = area * (eps * velocity_[a][f] + load.solids_flux[a][f]);
+    // Solids pass no inlet.
+    const double solids = face.kind == Face::Kind::inlet ? 0 : load.solids_flux[a][f];
+    const double flux = area * (eps * velocity_[a][f] + solids);
     if (face.low != none) equation.right[static_cast<std::size_t>(face.low)] -= flux;
     if (face.high != none) equation.right[static_cast<std::size_t>(face.high)] += flux;
     if (face.kind == Face::Kind::inlet) continue;
@@ -311,11 +342,12 @@ void GasFlow::look(const GasLoad& load) {
   for (const auto& face : faces_) {
     const double area = grid_->volume() / grid_->step()[face.axis];
     const double gas = area * gap(face, load) * velocity_[face.axis][face.number];
-    const double flux = gas + area * load.solids_flux[face.axis][face.number];
+    const bool is_inlet = face.kind == Face::Kind::inlet;
+    const double flux = gas + (is_inlet ? 0 : area * load.solids_flux[face.axis][face.number]);
     if (face.low != none) sum[static_cast<std::size_t>(face.low)] += flux;
     if (face.high != none) sum[static_cast<std::size_t>(face.high)] -= flux;
     largest = std::max(largest, std::abs(flux));
-    if (face.kind == Face::Kind::inlet) flow_in_ += face.low == none ? gas : -gas;
+    if (is_inlet) flow_in_ += face.low == none ? gas : -gas;
     if (face.kind == Face::Kind::outlet) flow_out_ += face.low == none ? -gas : gas;
   }
   double most = 0;

@@ -145,7 +145,6 @@ class StressedParcels final : public Mover {
   }
 
   void solve_pressure(double dt) {
-    const auto& law = settings_.granular;
     temperature_.assign(grid_.size(), 0), foreseen_.assign(grid_.size(), 0);
     for (std::size_t c = 0; c < grid_.size(); ++c) {
       if (!grid_.is_open(c)) continue;

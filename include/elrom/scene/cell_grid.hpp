@@ -52,11 +52,16 @@ class CellGrid {
     return faces_[axis][face] != 0;
   }
   /// An opening at the border of the open cells.
-  void open_face(std::size_t axis, std::size_t face) { faces_[axis][face] = 1; }
+  void open_face(std::size_t axis, std::size_t face) { faces_[axis][face] = border; }
+  /// Between the centres of its cells; at an opening half of that, m3.
+  [[nodiscard]] double face_volume(std::size_t axis, std::size_t face) const {
+    return faces_[axis][face] == border ? 0.5 * volume() : volume();
+  }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   using Index = std::array<std::size_t, 3>;
+  static constexpr std::uint8_t border = 2;
   [[nodiscard]] Index index(std::size_t cell) const;
   [[nodiscard]] std::size_t cell(const Index& at) const {
     return at[0] + count_[0] * (at[1] + count_[1] * at[2]);
@@ -70,7 +75,7 @@ class CellGrid {
   std::vector<std::uint8_t> open_;
   std::vector<double> space_;
   std::vector<std::int32_t> host_;                  // open cell nearest to each
-  std::array<std::vector<std::uint8_t>, 3> faces_;  // whether open
+  std::array<std::vector<std::uint8_t>, 3> faces_;  // 0: closed
 };
 
 }  // namespace elrom::scene

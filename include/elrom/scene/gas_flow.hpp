@@ -6,8 +6,8 @@
 //   eps rho (du/dt + u . grad u) = -eps grad p + eps mu lap u + K (u_s - u)
 //
 // p is without the gas's own weight; spheres' buoyancy is an effect of its own. The drag is implicit, in the
-// pressure's equation too, so that no K makes it unstable; the rest is explicit in as many steps as it
-// asks for. Convection by central differences, with as much diffusion as keeps them monotone (Spalding's
+// pressure's equation too, so that no K makes it unstable; convection and viscosity are implicit too, in steps
+// in which the gas crosses four cells at most. Convection by central differences, with as much diffusion as keeps them monotone (Spalding's
 // hybrid scheme): second order where |u| h < 2 nu, first where it is faster. Walls: no slip; cells are in or
 // out, so walls that lean are stairs. Inlets: a velocity, scaled so that the side's flow is exact. Outlets:
 // pressure 0.
@@ -81,13 +81,15 @@ class GasFlow {
  private:
   struct Face;
   struct Equation;
+  struct Links;
   void find_faces(const Domain& domain, const std::vector<GasInlet>& inlets);
   void scale_inlets(const Domain& domain, const std::vector<GasInlet>& inlets);
-  [[nodiscard]] double step_that_holds(double dt) const;
+  [[nodiscard]] double step_of(double dt) const;
   void step(double dt, const GasLoad& load);
   void foresee(double dt, const GasLoad& load);
-  void project(double dt, const GasLoad& load);
-  [[nodiscard]] double change(const Face& face, const FaceValues& u) const;
+  void project(const GasLoad& load);
+  [[nodiscard]] Links links(const Face& face, const FaceValues& u) const;
+  [[nodiscard]] double foreseen(const Face& face, const Links& around, double dt, const GasLoad& load) const;
   [[nodiscard]] double gap(const Face& face, const GasLoad& load) const;
   [[nodiscard]] double drop(const Face& face, const std::vector<double>& p) const;  // gradient
   void look(const GasLoad& load);
