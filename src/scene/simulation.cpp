@@ -107,7 +107,7 @@ std::unique_ptr<Effect> motion(const SceneSettings& s, const MoverSettings& m, M
       return std::make_unique<Collide>(name, mover, 250, 6e-8 * std::max(1.0, s.time_step / step));
     }
     case Collisions::hel:
-      return std::make_unique<Collide>(name, mover, 60, 2e-6);
+      return std::make_unique<Collide>(name, mover, 220, 2e-6);
     case Collisions::helscm:
       return std::make_unique<Collide>(name, mover, 150, 1.5e-7);
     case Collisions::helscm_document:

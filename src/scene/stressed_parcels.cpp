@@ -124,10 +124,10 @@ class StressedParcels final : public Mover {
   // The fraction that velocities give where nothing presses.
   [[nodiscard]] double foreseen(std::size_t c, double dt) const {
     double out = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double area = grid_.volume() / grid_.step()[a];
-      out += area * (flux_[a][grid_.face(c, a, 1)] - flux_[a][grid_.face(c, a, -1)]);
-    }
+    for (std::size_t a = 0; a < 3; ++a)
+      for (const int side : {-1, 1})  // no solids through walls, nor through the floor that gas comes from
+        if (!is_wall(c, a, side))
+          out += side * flux_[a][grid_.face(c, a, side)] * grid_.volume() / grid_.step()[a];
     // What is too dense already may stay so for a while: made good at once, it would burst.
     const auto& law = settings_.granular;
     const double excess = solids_.fraction[c] - 0.5 * (law.packing + law.friction_from);
