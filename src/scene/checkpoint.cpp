@@ -47,8 +47,9 @@ void read_vectors(const io::TensorFile& file, const std::string& name, std::size
   }
 }
 
-Particles particles_of(const std::vector<Sphere>& spheres) {
+Particles particles_of(const std::vector<Sphere>& spheres, bool are_parcels) {
   Particles particles;
+  particles.are_parcels = are_parcels;
   for (const auto& sphere : spheres) particles.add(sphere);
   return particles;
 }
@@ -59,6 +60,7 @@ void set_particles(io::TensorFile& file, const std::string& prefix, const Partic
   if (p.rotates) set_vectors(file, prefix + "spin", p.spin);
   file.set(prefix + "diameter", row(p.diameter));
   file.set(prefix + "density", row(p.density));
+  if (p.are_parcels) file.set(prefix + "weight", row(p.weight));
   file.set(prefix + "id", row(reals(p.id)));
   file.set(prefix + "group", row(reals(p.group)));
   if (p.remembers_hits) file.set(prefix + "last_hit", row(p.last_hit));
@@ -76,14 +78,18 @@ Particles read_particles(const io::TensorFile& file, const std::string& prefix, 
   p.id = read_whole<std::int64_t>(file, prefix + "id", n);
   p.group = read_whole<std::int32_t>(file, prefix + "group", n);
   if (p.remembers_hits) p.last_hit = read_row(file, prefix + "last_hit", n);
-  p.mass.clear();
+  if (p.are_parcels) p.weight = read_row(file, prefix + "weight", n);
+  p.mass.clear(), p.contact.clear();
   for (std::size_t i = 0; i < n; ++i) {
-    const bool is_sphere = p.diameter[i] > 0 && p.density[i] > 0 && p.diameter[i] < 1e3 &&
-                           p.density[i] < 1e9 && p.group[i] >= 0 && p.group[i] < n_groups;
+    const double weight = p.are_parcels ? p.weight[i] : 1;
+    const bool is_sphere = weight > 0 && weight < 1e15 && p.diameter[i] > 0 && p.density[i] > 0 &&
+                           p.diameter[i] < 1e3 && p.density[i] < 1e9 && p.group[i] >= 0 &&
+                           p.group[i] < n_groups;
     if (!is_sphere)
       throw InputError(
           Problem{.what = "a damaged checkpoint", .where = file.where(), .expected = "spheres of the scene"});
-    p.mass.push_back(particle::sphere_mass(p.diameter[i], p.density[i]));
+    p.mass.push_back(weight * particle::sphere_mass(p.diameter[i], p.density[i]));
+    if (p.are_parcels) p.contact.push_back(p.diameter[i] * std::sqrt(weight));
   }
   return p;
 }
@@ -107,11 +113,12 @@ io::TensorFile Simulation::save() {
   io::write_kind(file, io::kinds::scene_checkpoint);
   file.set_text("scene", digest_of(settings_));
   set_particles(file, "", state_.particles);
-  set_particles(file, "waiting_", particles_of(state_.waiting));
+  set_particles(file, "waiting_", particles_of(state_.waiting, state_.particles.are_parcels));
   file.set("counts", row(counts_of(state_)));
   file.set("collisions_by_groups", row(reals(state_.tally.by_groups)));
   file.set("placed", row(reals(placed_)));
   mover_->save(file);
+  for (const auto& timed : effects_) timed.effect->save(file);
   return file;
 }
 
@@ -125,9 +132,10 @@ void Simulation::load(const io::TensorFile& file) {
   Particles empty;
   empty.rotates = settings_.rotation;
   empty.remembers_hits = state.particles.remembers_hits;
+  empty.are_parcels = state.particles.are_parcels;
   state.particles = read_particles(file, "", state.n_groups, empty);
   state.waiting.clear();
-  const auto waiting = read_particles(file, "waiting_", state.n_groups, {});
+  const auto waiting = read_particles(file, "waiting_", state.n_groups, particles_of({}, empty.are_parcels));
   for (std::size_t i = 0; i < waiting.size(); ++i) state.waiting.push_back(waiting.sphere(i));
   const auto counts = read_row(file, "counts", n_counts);
   const auto whole = [&](std::size_t k) { return static_cast<std::int64_t>(counts[k]); };
@@ -142,6 +150,7 @@ void Simulation::load(const io::TensorFile& file) {
   const auto placed = read_whole<std::int64_t>(file, "placed", placed_.size());
   std::ranges::copy(placed, placed_.begin());  // effects hold on to the places
   state_ = std::move(state);
+  for (auto& timed : effects_) timed.effect->load(file);
   mover_->load(file);
   mover_->forget();
 }

@@ -40,6 +40,14 @@ Side side_through(const Body& body, const std::array<int, 4>& at) {
   return {normal, offset};
 }
 
+// Twice the area of a side, across it.
+Vec area(const Body& body, std::size_t side) {
+  const auto corner = [&](std::size_t k) {
+    return body.corners[static_cast<std::size_t>(side_corners[side][k])];
+  };
+  return cross(corner(2) - corner(0), corner(3) - corner(1));
+}
+
 // A wall, or an opening, as the centre of a sphere meets it.
 double clearance(const Side& side, const Vec& place, double radius) {
   return side.distance(place) - (side.kind == SideKind::wall ? radius : 0);
@@ -86,10 +94,9 @@ double Body::volume() const {
   // Pyramids over the sides, from a corner.
   double sum = 0;
   for (std::size_t k = 0; k < 6; ++k) {
-    const auto& at = side_corners[k];
-    const auto corner = [&](std::size_t i) { return corners[static_cast<std::size_t>(at[i])]; };
-    const Vec area = cross(corner(2) - corner(0), corner(3) - corner(1));
-    sum += 0.5 * std::sqrt(dot(area, area)) * dot(sides[k].normal, corners[0] - corner(0)) / 3;
+    const Vec across = area(*this, k);
+    const Vec corner = corners[static_cast<std::size_t>(side_corners[k][0])];
+    sum += 0.5 * std::sqrt(dot(across, across)) * dot(sides[k].normal, corners[0] - corner) / 3;
   }
   return sum;
 }
@@ -128,13 +135,16 @@ Vec Images::nearest(Vec d) const {
 Domain::Domain(std::vector<Body> bodies, const std::vector<std::string>& outlets,
                const std::vector<std::string>& openings, const std::vector<std::string>& periodic)
     : bodies_(std::move(bodies)) {
-  for (const auto& name : outlets) side(name).kind = SideKind::outlet;
-  for (const auto& name : openings) side(name).kind = SideKind::opening;
+  const auto make = [&](const std::string& name, SideKind kind) {
+    const_cast<Side&>(named_side(name)).kind = kind;
+  };
+  for (const auto& name : outlets) make(name, SideKind::outlet);
+  for (const auto& name : openings) make(name, SideKind::opening);
   if (periodic.empty()) return;
   const auto upright = [](const Body& body) {
     return std::ranges::all_of(body.sides, [](const Side& side) {
       const Vec n = side.normal;
-      return std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}) == 1;
+      return std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}) > 1 - 1e-12;
     });
   };
   if (bodies_.size() != 1 || !upright(bodies_[0]))
@@ -149,10 +159,10 @@ Domain::Domain(std::vector<Body> bodies, const std::vector<std::string>& outlets
   }
 }
 
-Side& Domain::side(const std::string& name) {
+const Side& Domain::named_side(const std::string& name) const {
   const auto dot_at = name.rfind('.');
   std::vector<std::string> known;
-  for (auto& body : bodies_)
+  for (const auto& body : bodies_)
     for (std::size_t k = 0; k < 6; ++k) {
       known.push_back(body.name + "." + side_names[k]);
       if (known.back() == name) return body.sides[k];
@@ -161,6 +171,13 @@ Side& Domain::side(const std::string& name) {
                            .found = "'" + name + "'",
                            .expected = dot_at == std::string::npos ? "box.side" : "",
                            .advice = base::name_advice(name, known)});
+}
+
+double Domain::area_of(const Side& side) const {
+  for (const auto& body : bodies_)
+    for (std::size_t k = 0; k < 6; ++k)
+      if (&body.sides[k] == &side) return 0.5 * std::sqrt(dot(area(body, k), area(body, k)));
+  return 0;
 }
 
 bool Domain::has_outlets() const {

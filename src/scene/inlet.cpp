@@ -60,8 +60,18 @@ std::optional<Vec> lattice_place(const Placer& placer, const Body& region, doubl
   return std::nullopt;
 }
 
+// Of a sphere with the volume of a parcel.
+double room_of(double diameter, double weight) {
+  return weight == 1 ? diameter : diameter * std::cbrt(weight);
+}
+double room_of(const Particles& p, std::size_t i) {
+  return p.are_parcels ? room_of(p.diameter[i], p.weight[i]) : p.diameter[i];
+}
+
 double largest_of(const Particles& p) {
-  return p.diameter.empty() ? 0 : *std::max_element(p.diameter.begin(), p.diameter.end());
+  double largest = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) largest = std::max(largest, room_of(p, i));
+  return largest;
 }
 
 class Inlet final : public Effect {
@@ -125,16 +135,17 @@ class Recirculation final : public Effect {
  private:
   void bring_back(State& state, const std::vector<Sphere>& spheres) {
     double largest = largest_of(state.particles);
-    for (const auto& sphere : spheres) largest = std::max(largest, sphere.diameter);
+    for (const auto& s : spheres) largest = std::max(largest, room_of(s.diameter, s.weight));
     Placer placer(state.particles, domain_, largest);
     for (auto sphere : spheres) {
       base::Random random(seed_.derive(static_cast<std::uint64_t>(state.tally.returned)));
-      const auto place = random_place(placer, region_, 0.5 * sphere.diameter, random);
+      const double radius = 0.5 * room_of(sphere.diameter, sphere.weight);
+      const auto place = random_place(placer, region_, radius, random);
       if (!place) {
         state.waiting.push_back(sphere);
         continue;
       }
-      placer.add(*place, 0.5 * sphere.diameter);
+      placer.add(*place, radius);
       sphere.place = *place;
       sphere.velocity = velocity_;
       sphere.id = state.next_id++;
@@ -194,7 +205,7 @@ Placer::Placer(const Particles& p, const Domain& domain, double largest)
   grid_->size = largest;
   grid_->bounded = domain.images().any();
   if (grid_->bounded) grid_->low = domain.low(), grid_->high = domain.high();
-  for (std::size_t i = 0; i < p.size(); ++i) add(get(p.place, i), 0.5 * p.diameter[i]);
+  for (std::size_t i = 0; i < p.size(); ++i) add(get(p.place, i), 0.5 * room_of(p, i));
 }
 Placer::~Placer() = default;
 
@@ -239,14 +250,14 @@ std::int64_t inject(State& state, const Domain& domain, const Source& source, ba
   for (auto k = placed; k < due; ++k) {
     auto random = stream(k);
     diameters.push_back(source.sizes.draw(random));
-    largest_new = std::max(largest_new, diameters.back());
+    largest_new = std::max(largest_new, room_of(diameters.back(), source.weight));
   }
   Placer placer(state.particles, domain, std::max(largest, largest_new));
   std::int64_t site = 0;
   for (const double diameter : diameters) {
     auto random = stream(placed);
     static_cast<void>(source.sizes.draw(random));
-    const double radius = 0.5 * diameter;
+    const double radius = 0.5 * room_of(diameter, source.weight);
     const auto place = source.arrangement == Arrangement::random
                            ? random_place(placer, source.region, radius, random)
                            : lattice_place(placer, source.region, 1.001 * largest_new, radius, site);
@@ -254,7 +265,7 @@ std::int64_t inject(State& state, const Domain& domain, const Source& source, ba
     placer.add(*place, radius);
     const double u = random.normal(), v = random.normal(), w = random.normal();
     state.particles.add({*place, source.velocity + source.scatter * Vec{u, v, w}, diameter, source.density,
-                         state.next_id++, source.group});
+                         state.next_id++, source.group, source.weight});
     ++placed;
     ++state.tally.added;
   }

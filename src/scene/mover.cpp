@@ -27,6 +27,8 @@ std::unique_ptr<Mover> make_mover(const Domain& domain, const MoverSettings& set
       break;
     case Collisions::dem:
       return make_soft_spheres(domain, settings);
+    case Collisions::hel:
+      return make_stressed_parcels(domain, settings);
     case Collisions::helscm:
       return make_swept(domain, settings);
     case Collisions::helscm_document:

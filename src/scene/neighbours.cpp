@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <span>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
@@ -13,54 +15,145 @@ namespace {
 
 constexpr std::size_t block_size = 1024;  // spheres a thread takes at a time
 using Cell = std::array<std::int64_t, 3>;
+using Pairs = std::vector<std::array<std::int32_t, 2>>;
+
+// Rows of cells after a cell's own that make half of its neighbourhood: {y, z}.
+constexpr std::array<std::array<std::int64_t, 2>, 4> rows_ahead{{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
+
+class Level;
+
+// Spheres that may be near those of a cell, side by side.
+struct Company {
+  std::size_t size = 0;  // of the arrays, which only grow
+  std::vector<double> x, y, z, r, gap;
+  std::vector<std::int32_t> number, found;
+
+  void clear() { size = 0; }
+  void add(const Level& level, std::size_t first, std::size_t last, const Vec& move);
+  // Which of them, from one on, are nearer to a place than their radius and a reach. @return numbers
+  std::span<const std::int32_t> near(const Vec& place, double reach, std::size_t from) {
+    const std::size_t n = size;
+    const double *px = x.data(), *py = y.data(), *pz = z.data(), *pr = r.data();
+    double* const out = gap.data();
+    for (std::size_t k = from; k < n; ++k) {
+      const double dx = px[k] - place.x, dy = py[k] - place.y, dz = pz[k] - place.z, limit = reach + pr[k];
+      out[k] = dx * dx + dy * dy + dz * dz - limit * limit;
+    }
+    std::size_t n_found = 0;
+    for (std::size_t k = from; k < n; ++k) {
+      found[n_found] = number[k];
+      n_found += out[k] < 0 ? 1 : 0;
+    }
+    return {found.data(), n_found};
+  }
+};
 
 // Spheres of about one size, sorted by cells. Cells lie in a dense table where it is not much larger than the
 // spheres' number, else cells share the table's places by a hash.
 class Level {
  public:
-  Level(const Particles& p, const Domain& domain, std::vector<std::int32_t> members, double skin)
-      : members_(std::move(members)) {
-    for (const auto i : members_) radius_ = std::max(radius_, 0.5 * p.diameter[static_cast<std::size_t>(i)]);
+  std::vector<std::int32_t> members;  // sorted by bucket, then by number
+  friend Company;
+
+  void build(const Particles& p, const Domain& domain, double skin) {
+    radius_ = 0;
+    for (const auto i : members)
+      radius_ = std::max(radius_, 0.5 * p.contact_diameter()[static_cast<std::size_t>(i)]);
     place_grid(p, domain, 2 * radius_ + skin);
-    sort(p, domain);
+    sort(p);
   }
   [[nodiscard]] double radius() const { return radius_; }
+  [[nodiscard]] Vec place(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
+  [[nodiscard]] double radius(std::size_t k) const { return r_[k]; }
 
-  // Calls found(j, sorted place) for each sphere in cells within `reach` of a place.
-  template <class Found>
-  void near(const Vec& place, double reach, const Found& found) const {
-    const std::array<double, 3> at{place.x, place.y, place.z};
-    Cell from, to;
+  // Members of one cell from place k on. @return the place behind the last
+  [[nodiscard]] std::size_t end_of_cell(std::size_t k, std::size_t last) const {
+    std::size_t end = k + 1;
+    while (end < last && keys_[end] == keys_[k]) ++end;
+    return end;
+  }
+  // The cell of place k from there on, and the half of the cells around it. Only where there are halves.
+  void half_around(std::size_t k, Company& company) const {
+    company.clear();
+    const auto at = cell_of_key(keys_[k]);
+    const auto rest = bucket(keys_[k]);
+    for (std::size_t q = k; q < begin_[rest + 1]; ++q)
+      if (keys_[q] == keys_[k]) company.add(*this, q, q + 1, {});
+    gather(at[0] + 1, at[0] + 1, at[1], at[2], company);
+    for (const auto& [y, z] : rows_ahead) gather(at[0] - 1, at[0] + 1, at[1] + y, at[2] + z, company);
+  }
+  // Whether half a neighbourhood holds each pair once.
+  [[nodiscard]] bool has_halves() const {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (period_[a] && count_[a] < 3) return false;
+    return true;
+  }
+
+  // Those nearer to a place than their radius and `reach`.
+  std::span<const std::int32_t> near(const Vec& place, double reach, const Images& images,
+                                     Company& company) const {
+    const double wide = reach + radius_;
+    const Vec corner{wide, wide, wide};
+    Cell from = cell_of(place - corner), to = cell_of(place + corner);
     for (std::size_t a = 0; a < 3; ++a) {
-      from[a] = cell_along(at[a] - reach, a);
-      to[a] = cell_along(at[a] + reach, a);
       if (period_[a] && to[a] - from[a] >= count_[a]) from[a] = 0, to[a] = count_[a] - 1;
       if (!period_[a]) from[a] = std::max<std::int64_t>(from[a], 0), to[a] = std::min(to[a], count_[a] - 1);
     }
+    company.clear();
+    const auto add = [&](std::size_t first, std::size_t last) {
+      for (std::size_t k = first; k < last; ++k) company.add(*this, k, k + 1, image(k, place, images));
+    };
     for (std::int64_t z = from[2]; z <= to[2]; ++z)
-      for (std::int64_t y = from[1]; y <= to[1]; ++y) near_row(from[0], to[0], y, z, found);
+      for (std::int64_t y = from[1]; y <= to[1]; ++y) row(from[0], to[0], y, z, add);
+    return company.near(place, reach, 0);
   }
 
  private:
-  template <class Found>
-  void near_row(std::int64_t x0, std::int64_t x1, std::int64_t y, std::int64_t z, const Found& found) const {
-    if (x0 > x1) return;
-    const auto row = [&](std::int64_t first, std::int64_t last) {
-      if (dense_) return run(bucket(key({first, y, z})), bucket(key({last, y, z})) + 1, found);
-      for (std::int64_t x = first; x <= last; ++x) run_of_cell(key({x, y, z}), found);
-    };
-    if (!period_[0] || (x0 >= 0 && x1 < count_[0])) return row(x0, x1);
-    for (std::int64_t x = x0; x <= x1; ++x) row(x, x);
+  // A row of cells, moved by a period where it lies beyond the ends of one.
+  void gather(std::int64_t x0, std::int64_t x1, std::int64_t y, std::int64_t z, Company& company) const {
+    Vec move{0, shift(y, 1), shift(z, 2)};
+    if (!period_[0] || (x0 >= 0 && x1 < count_[0]))
+      return row(x0, x1, y, z,
+                 [&](std::size_t first, std::size_t last) { company.add(*this, first, last, move); });
+    for (std::int64_t x = x0; x <= x1; ++x) {
+      move.x = shift(x, 0);
+      row(x, x, y, z, [&](std::size_t first, std::size_t last) { company.add(*this, first, last, move); });
+    }
   }
-  template <class Found>
-  void run(std::size_t first, std::size_t last, const Found& found) const {
-    for (std::size_t k = begin_[first]; k < begin_[last]; ++k) found(members_[k], k);
+  [[nodiscard]] double shift(std::int64_t index, std::size_t a) const {
+    return !period_[a] ? 0 : index < 0 ? -length_[a] : index >= count_[a] ? length_[a] : 0;
   }
-  template <class Found>
-  void run_of_cell(std::int64_t key, const Found& found) const {
+  [[nodiscard]] Cell cell_of_key(std::int64_t key) const {
+    return {key % count_[0], key / count_[0] % count_[1], key / count_[0] / count_[1]};
+  }
+  template <class Run>
+  void row(std::int64_t x0, std::int64_t x1, std::int64_t y, std::int64_t z, const Run& run) const {
+    if (!wrap(y, 1) || !wrap(z, 2)) return;
+    const bool inside = x0 >= 0 && x1 < count_[0];
+    if (!period_[0]) x0 = std::max<std::int64_t>(x0, 0), x1 = std::min(x1, count_[0] - 1);
+    if (dense_ && x0 <= x1 && (inside || !period_[0])) {
+      const auto base = static_cast<std::size_t>(count_[0] * (y + count_[1] * z));
+      return run(begin_[base + static_cast<std::size_t>(x0)],
+                 begin_[base + static_cast<std::size_t>(x1) + 1]);
+    }
+    for (std::int64_t x = x0; x <= x1; ++x) {
+      std::int64_t wrapped = x;
+      wrap(wrapped, 0);
+      cell(wrapped + count_[0] * (y + count_[1] * z), run);
+    }
+  }
+  template <class Run>
+  void cell(std::int64_t key, const Run& run) const {
     const auto at = bucket(key);
+    if (dense_) return run(begin_[at], begin_[at + 1]);
     for (std::size_t k = begin_[at]; k < begin_[at + 1]; ++k)
-      if (keys_[k] == key) found(members_[k], k);
+      if (keys_[k] == key) run(k, k + 1);
+  }
+  // @return whether there is such a row of cells
+  bool wrap(std::int64_t& index, std::size_t a) const {
+    if (index >= 0 && index < count_[a]) return true;
+    if (period_[a]) index = (index % count_[a] + count_[a]) % count_[a];
+    return period_[a];
   }
 
   void place_grid(const Particles& p, const Domain& domain, double size) {
@@ -68,12 +161,12 @@ class Level {
     const std::array<double, 3> lengths{period.x, period.y, period.z};
     for (std::size_t a = 0; a < 3; ++a) {
       double low = HUGE_VAL, high = -HUGE_VAL;
-      for (const auto i : members_) {
+      for (const auto i : members) {
         const double x = p.place[a][static_cast<std::size_t>(i)];
         low = std::min(low, x), high = std::max(high, x);
       }
       period_[a] = lengths[a] > 0;
-      origin_[a] = low;
+      origin_[a] = low, length_[a] = lengths[a];
       const double extent = period_[a] ? lengths[a] : high - low;
       count_[a] = static_cast<std::int64_t>(std::clamp(std::floor(extent / size), 1.0, 2e6));
       per_length_[a] = static_cast<double>(count_[a]) / std::max(extent, size);
@@ -81,19 +174,27 @@ class Level {
     }
     const double n_cells =
         static_cast<double>(count_[0]) * static_cast<double>(count_[1]) * static_cast<double>(count_[2]);
-    dense_ = n_cells <= 8.0 * static_cast<double>(members_.size()) + 4096;
+    dense_ = n_cells <= 16.0 * static_cast<double>(members.size()) + 4096;
     n_buckets_ = dense_ ? static_cast<std::size_t>(n_cells) : 1;
-    while (!dense_ && n_buckets_ < 2 * members_.size()) n_buckets_ *= 2;
+    while (!dense_ && n_buckets_ < 2 * members.size()) n_buckets_ *= 2;
   }
 
-  [[nodiscard]] std::int64_t cell_along(double x, std::size_t a) const {
-    return static_cast<std::int64_t>(std::clamp(std::floor((x - origin_[a]) * per_length_[a]), -4e6, 4e6));
+  // Not clamped to the table: an index beyond it is a cell that holds nothing, or of a period.
+  [[nodiscard]] Cell cell_of(const Vec& p) const {
+    const std::array<double, 3> at{p.x, p.y, p.z};
+    Cell cell;
+    for (std::size_t a = 0; a < 3; ++a)
+      cell[a] =
+          static_cast<std::int64_t>(std::clamp(std::floor((at[a] - origin_[a]) * per_length_[a]), -4e6, 4e6));
+    return cell;
   }
-  [[nodiscard]] std::int64_t key(Cell cell) const {
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (period_[a]) cell[a] = (cell[a] % count_[a] + count_[a]) % count_[a];
-      cell[a] = std::clamp<std::int64_t>(cell[a], 0, count_[a] - 1);
-    }
+  [[nodiscard]] Cell own_cell(const Vec& p) const {
+    Cell cell = cell_of(p);
+    for (std::size_t a = 0; a < 3; ++a)
+      if (!wrap(cell[a], a)) cell[a] = std::clamp<std::int64_t>(cell[a], 0, count_[a] - 1);
+    return cell;
+  }
+  [[nodiscard]] std::int64_t key(const Cell& cell) const {
     return cell[0] + count_[0] * (cell[1] + count_[1] * cell[2]);
   }
   [[nodiscard]] std::size_t bucket(std::int64_t key) const {
@@ -102,32 +203,43 @@ class Level {
     return (mixed >> 20) & (n_buckets_ - 1);
   }
 
-  void sort(const Particles& p, const Domain&) {
-    std::vector<std::int64_t> keys;
+  // How far its nearest image lies from a member.
+  [[nodiscard]] Vec image(std::size_t k, const Vec& from, const Images& images) const {
+    if (!images.any()) return {};
+    const Vec apart = place(k) - from;
+    return images.nearest(apart) - apart;
+  }
+  // Its image between the lowest member and a period above.
+  [[nodiscard]] double inside(double x, std::size_t a) const {
+    return period_[a] ? x - length_[a] * std::floor((x - origin_[a]) / length_[a]) : x;
+  }
+  void sort(const Particles& p) {
+    const std::size_t n = members.size();
+    unsorted_ = members;
+    unsorted_keys_.resize(n), keys_.resize(n);
+    for (auto* values : {&x_, &y_, &z_, &r_}) values->resize(n);
     begin_.assign(n_buckets_ + 1, 0);
-    for (const auto i : members_) {
-      const auto at = static_cast<std::size_t>(i);
-      Cell cell;
-      for (std::size_t a = 0; a < 3; ++a) cell[a] = cell_along(p.place[a][at], a);
-      keys.push_back(key(cell));
-      ++begin_[bucket(keys.back()) + 1];
+    for (std::size_t k = 0; k < n; ++k) {
+      unsorted_keys_[k] = key(own_cell(get(p.place, static_cast<std::size_t>(unsorted_[k]))));
+      ++begin_[bucket(unsorted_keys_[k]) + 1];
     }
     for (std::size_t b = 0; b < n_buckets_; ++b) begin_[b + 1] += begin_[b];
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    std::vector<std::int32_t> sorted(members_.size());
-    keys_.resize(members_.size());
-    for (std::size_t k = 0; k < members_.size(); ++k) {
-      const auto at = next[bucket(keys[k])]++;
-      sorted[at] = members_[k];
-      keys_[at] = keys[k];
+    next_.assign(begin_.begin(), begin_.end() - 1);
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto at = next_[bucket(unsorted_keys_[k])]++;
+      const auto i = static_cast<std::size_t>(unsorted_[k]);
+      members[at] = unsorted_[k];
+      keys_[at] = unsorted_keys_[k];
+      x_[at] = inside(p.place[0][i], 0), y_[at] = inside(p.place[1][i], 1), z_[at] = inside(p.place[2][i], 2);
+      r_[at] = 0.5 * p.contact_diameter()[i];
     }
-    members_ = std::move(sorted);
   }
 
-  std::vector<std::int32_t> members_;  // sorted by bucket, then by number
-  std::vector<std::int64_t> keys_;     // of their cells
-  std::vector<std::size_t> begin_;     // of each bucket
-  std::array<double, 3> origin_{}, per_length_{};
+  std::vector<std::int32_t> unsorted_;
+  std::vector<std::int64_t> keys_, unsorted_keys_;  // of the cells
+  std::vector<std::size_t> begin_, next_;           // of each bucket
+  std::vector<double> x_, y_, z_, r_;               // of the members
+  std::array<double, 3> origin_{}, per_length_{}, length_{};
   Cell count_{};
   std::array<bool, 3> period_{};
   std::size_t n_buckets_ = 1;
@@ -135,56 +247,25 @@ class Level {
   double radius_ = 0;
 };
 
-// How many times smaller than the largest, in factors of two.
-std::size_t level_of(double diameter, double largest) {
-  return static_cast<std::size_t>(std::max(0.0, std::floor(std::log2(largest / diameter))));
+void Company::add(const Level& level, std::size_t first, std::size_t last, const Vec& move) {
+  const std::size_t begin = size, n = last - first;
+  size += n;
+  if (number.size() < size) {
+    for (auto* values : {&x, &y, &z, &r, &gap}) values->resize(2 * size);
+    number.resize(2 * size), found.resize(2 * size);
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    x[begin + k] = level.x_[first + k] + move.x;
+    y[begin + k] = level.y_[first + k] + move.y;
+    z[begin + k] = level.z_[first + k] + move.z;
+    r[begin + k] = level.r_[first + k];
+    number[begin + k] = level.members[first + k];
+  }
 }
 
-struct Levels {
-  std::vector<Level> levels;     // largest spheres first
-  std::vector<std::uint8_t> of;  // of each sphere: its place in `levels`
-
-  Levels(const Particles& p, const Domain& domain, double skin) : of(p.size()) {
-    const double largest = *std::max_element(p.diameter.begin(), p.diameter.end());
-    std::vector<std::vector<std::int32_t>> members;
-    std::vector<std::size_t> level(p.size());
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      level[i] = level_of(p.diameter[i], largest);
-      if (members.size() <= level[i]) members.resize(level[i] + 1);
-      members[level[i]].push_back(static_cast<std::int32_t>(i));
-    }
-    std::vector<std::uint8_t> filled(members.size());
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      filled[k] = static_cast<std::uint8_t>(levels.size());
-      if (!members[k].empty()) levels.emplace_back(p, domain, std::move(members[k]), skin);
-    }
-    for (std::size_t i = 0; i < p.size(); ++i) of[i] = filled[level[i]];
-  }
-};
-
-using Pairs = std::vector<std::array<std::int32_t, 2>>;
-
-// Pairs of one sphere with those of its own level and of larger ones.
-void pairs_of(const Particles& p, const Images& images, const Levels& levels, std::size_t i, double skin,
-              Pairs& pairs) {
-  const bool periodic = images.any();
-  const Vec place = get(p.place, i);
-  const double radius = 0.5 * p.diameter[i] + skin;
-  const double *x = p.place[0].data(), *y = p.place[1].data(), *z = p.place[2].data(), *d = p.diameter.data();
-  const auto me = static_cast<std::int32_t>(i);
-  for (std::size_t level = 0; level <= levels.of[i]; ++level) {
-    const bool own = level == levels.of[i];
-    levels.levels[level].near(place, radius + levels.levels[level].radius(),
-                              [&](std::int32_t j, std::size_t) {
-                                if (own && j <= me) return;
-                                const auto at = static_cast<std::size_t>(j);
-                                Vec apart{x[at] - place.x, y[at] - place.y, z[at] - place.z};
-                                if (periodic) apart = images.nearest(apart);
-                                const double limit = radius + 0.5 * d[at];
-                                if (dot(apart, apart) < limit * limit)
-                                  pairs.push_back({std::min(me, j), std::max(me, j)});
-                              });
-  }
+// How many times smaller than the largest, in factors of two.
+std::size_t level_of(double diameter, double largest) {
+  return static_cast<std::size_t>(std::max(0, std::ilogb(largest / diameter)));
 }
 
 void expect_finite(const Particles& p) {
@@ -194,37 +275,131 @@ void expect_finite(const Particles& p) {
                                    .advice = "take a shorter time step"});
 }
 
+// Spheres around a sphere, by volume: how many others its cell of four diameters holds, on average.
+double crowding(const Particles& p, double mean_diameter) {
+  const double edge = 4 * mean_diameter;
+  std::size_t n_buckets = 1;
+  while (n_buckets < 4 * p.size()) n_buckets *= 2;
+  std::vector<std::uint32_t> count(n_buckets);
+  double pairs = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    std::uint64_t key = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      key = (key + static_cast<std::uint64_t>(static_cast<std::int64_t>(
+                       std::clamp(std::floor(p.place[a][i] / edge), -1e15, 1e15)))) *
+            0x9E3779B97F4A7C15ull;
+    pairs += 2 * count[(key >> 24) & (n_buckets - 1)]++;
+  }
+  return pairs / static_cast<double>(p.size()) / (edge * edge * edge);
+}
+
 }  // namespace
 
+// What a search needs, kept from list to list.
+struct NeighbourList::Search {
+  std::vector<Level> levels;  // largest spheres first; those of some size may be none
+  std::vector<Pairs> found;   // by block
+  std::vector<std::vector<std::int32_t>> walls;
+  std::vector<std::size_t> next, by_larger;
+  std::vector<std::int32_t> smaller;
+
+  void sort_into_levels(const Particles& p, const Domain& domain, double skin) {
+    const auto& d = p.contact_diameter();
+    const double largest = *std::max_element(d.begin(), d.end());
+    for (auto& level : levels) level.members.clear();
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const auto level = level_of(d[i], largest);
+      if (levels.size() <= level) levels.resize(level + 1);
+      levels[level].members.push_back(static_cast<std::int32_t>(i));
+    }
+    for (auto& level : levels)
+      if (!level.members.empty()) level.build(p, domain, skin);
+  }
+
+  // Pairs of the spheres at some places of a level with those of their own level and of larger ones.
+  void search(const Images& images, std::size_t level, std::size_t first, std::size_t last, double skin,
+              Pairs& pairs) const {
+    Company company;
+    const Level& own = levels[level];
+    const auto add = [&](std::int32_t me, std::int32_t other) {
+      pairs.push_back({std::min(me, other), std::max(me, other)});
+    };
+    for (std::size_t k = first; own.has_halves() && k < last;) {
+      own.half_around(k, company);
+      const std::size_t begin = k, end = own.end_of_cell(k, last);
+      for (; k < end; ++k)
+        for (const auto other : company.near(own.place(k), own.radius(k) + skin, k - begin + 1))
+          add(own.members[k], other);
+    }
+    for (std::size_t other = own.has_halves() ? level : level + 1; other-- > 0;)
+      for (std::size_t k = first; k < last && !levels[other].members.empty(); ++k)
+        for (const auto partner : levels[other].near(own.place(k), own.radius(k) + skin, images, company))
+          if (other != level || partner > own.members[k]) add(own.members[k], partner);
+  }
+};
+
+NeighbourList::NeighbourList() : search_(std::make_unique<Search>()) {}
+NeighbourList::~NeighbourList() = default;
+
 void NeighbourList::build(const Particles& p, const Domain& domain, double skin, int n_threads) {
-  const std::size_t n = p.size(), n_blocks = (n + block_size - 1) / block_size;
+  const std::size_t n = p.size();
   above_.begin.assign(n + 1, 0);
   above_.partner.clear();
-  all_ = {};
+  all_.begin.clear(), all_.partner.clear();
   near_wall_.clear();
   if (n == 0) return;
   expect_finite(p);
-  const Levels levels(p, domain, skin);
-  std::vector<Pairs> found(n_blocks);
-  std::vector<std::vector<std::int32_t>> walls(n_blocks);
-  base::parallel_for(n_blocks, n_threads, [&](std::size_t block, int) {
-    for (std::size_t i = block * block_size; i < std::min(n, (block + 1) * block_size); ++i) {
-      pairs_of(p, domain.images(), levels, i, skin, found[block]);
-      if (!domain.unbounded() && domain.room(get(p.place, i)) < 0.5 * p.diameter[i] + skin)
-        walls[block].push_back(static_cast<std::int32_t>(i));
-    }
+  auto& s = *search_;
+  s.sort_into_levels(p, domain, skin);
+  struct Piece {
+    std::size_t level, first, last;
+  };
+  std::vector<Piece> pieces;
+  for (std::size_t level = 0; level < s.levels.size(); ++level)
+    for (std::size_t first = 0; first < s.levels[level].members.size(); first += block_size)
+      pieces.push_back({level, first, std::min(first + block_size, s.levels[level].members.size())});
+  if (s.found.size() < pieces.size()) s.found.resize(pieces.size());
+  for (auto& pairs : s.found) pairs.clear();
+  base::parallel_for(pieces.size(), n_threads, [&](std::size_t k, int) {
+    s.search(domain.images(), pieces[k].level, pieces[k].first, pieces[k].last, skin, s.found[k]);
   });
-  for (const auto& pairs : found)
-    for (const auto& pair : pairs) ++above_.begin[static_cast<std::size_t>(pair[0]) + 1];
-  for (std::size_t i = 0; i < n; ++i) above_.begin[i + 1] += above_.begin[i];
-  above_.partner.resize(above_.begin[n]);
-  std::vector<std::size_t> next(above_.begin.begin(), above_.begin.end() - 1);
-  for (const auto& pairs : found)
-    for (const auto& pair : pairs) above_.partner[next[static_cast<std::size_t>(pair[0])]++] = pair[1];
-  for (std::size_t i = 0; i < n; ++i)
-    std::sort(above_.partner.begin() + static_cast<std::ptrdiff_t>(above_.begin[i]),
-              above_.partner.begin() + static_cast<std::ptrdiff_t>(above_.begin[i + 1]));
+  sort_pairs(n);
+  if (!domain.unbounded()) find_walls(p, domain, skin, n_threads);
+}
+
+void NeighbourList::find_walls(const Particles& p, const Domain& domain, double skin, int n_threads) {
+  const std::size_t n = p.size(), n_blocks = (n + block_size - 1) / block_size;
+  auto& walls = search_->walls;
+  walls.resize(n_blocks);
+  base::parallel_for(n_blocks, n_threads, [&](std::size_t block, int) {
+    walls[block].clear();
+    for (std::size_t i = block * block_size; i < std::min(n, (block + 1) * block_size); ++i)
+      if (domain.room(get(p.place, i)) < 0.5 * p.diameter[i] + skin)
+        walls[block].push_back(static_cast<std::int32_t>(i));
+  });
   for (const auto& wall : walls) near_wall_.insert(near_wall_.end(), wall.begin(), wall.end());
+}
+
+// Counting sorts by the larger number of a pair, then by the smaller: partners come out ascending.
+void NeighbourList::sort_pairs(std::size_t n) {
+  auto& s = *search_;
+  s.by_larger.assign(n + 1, 0);
+  for (const auto& pairs : s.found)
+    for (const auto& [i, j] : pairs) {
+      ++above_.begin[static_cast<std::size_t>(i) + 1];
+      ++s.by_larger[static_cast<std::size_t>(j) + 1];
+    }
+  for (std::size_t i = 0; i < n; ++i)
+    above_.begin[i + 1] += above_.begin[i], s.by_larger[i + 1] += s.by_larger[i];
+  s.smaller.resize(above_.begin[n]);
+  s.next.assign(s.by_larger.begin(), s.by_larger.end() - 1);
+  for (const auto& pairs : s.found)
+    for (const auto& [i, j] : pairs) s.smaller[s.next[static_cast<std::size_t>(j)]++] = i;
+  above_.partner.resize(above_.begin[n]);
+  s.next.assign(above_.begin.begin(), above_.begin.end() - 1);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t k = s.by_larger[j]; k < s.by_larger[j + 1]; ++k)
+      above_.partner[s.next[static_cast<std::size_t>(s.smaller[k])]++] = static_cast<std::int32_t>(j);
 }
 
 void NeighbourList::with_both() {
@@ -236,7 +411,8 @@ void NeighbourList::with_both() {
   }
   for (std::size_t i = 0; i < n; ++i) all_.begin[i + 1] += all_.begin[i];
   all_.partner.resize(all_.begin[n]);
-  std::vector<std::size_t> next(all_.begin.begin(), all_.begin.end() - 1);
+  auto& next = search_->next;
+  next.assign(all_.begin.begin(), all_.begin.end() - 1);
   // Smaller partners of j come in the order of i, before j's own larger ones.
   for (std::size_t i = 0; i < n; ++i)
     for (const auto j : above(i))
@@ -250,6 +426,21 @@ std::size_t NeighbourList::bytes() const {
     return rows.begin.capacity() * sizeof(std::size_t) + rows.partner.capacity() * sizeof(std::int32_t);
   };
   return of(above_) + of(all_) + near_wall_.capacity() * sizeof(std::int32_t);
+}
+
+double best_skin(const Particles& p, double travel, double look) {
+  constexpr double make = 2e-7, make_pair = 2e-8;  // s, of a list, for each sphere and each pair
+  double mean = 0;
+  for (const double d : p.contact_diameter()) mean += d / static_cast<double>(p.size());
+  const double around = 2 * std::numbers::pi / 3 * crowding(p, mean);  // pairs of a sphere, by reach cubed
+  double best = 0.1 * mean, least = HUGE_VAL;
+  for (double skin = best; skin < 60 * mean; skin *= 1.25) {
+    const double lists = 2 * travel / skin;  // that a step takes
+    const double pairs = around * std::pow(mean + skin, 3);
+    const double cost = lists * (make + make_pair * pairs) + std::max(1.0, lists) * look * pairs;
+    if (cost < least) least = cost, best = skin;
+  }
+  return best;
 }
 
 Overlaps overlaps_of(const Particles& p, const Domain& domain, double share, int n_threads) {

@@ -17,6 +17,7 @@ class OneCollision {
     put(pairs_.normal, normal);
     pairs_.diameter_1[0] = p.diameter[i], pairs_.diameter_2[0] = p.diameter[j];
     pairs_.density_1[0] = p.density[i], pairs_.density_2[0] = p.density[j];
+    if (p.are_parcels) pairs_.density_1[0] *= p.weight[i], pairs_.density_2[0] *= p.weight[j];
     model_.impulses(pairs_, impulses_);
     set(p.velocity, i, get(p.velocity, i) + (1 / p.mass[i]) * row(impulses_.linear_1));
     set(p.velocity, j, get(p.velocity, j) + (1 / p.mass[j]) * row(impulses_.linear_2));

@@ -12,7 +12,7 @@ template <class P, class F>
 void for_each_array(P& p, const F& f) {
   for (auto* vectors : {&p.place, &p.velocity, &p.spin})
     for (auto& component : *vectors) f(component);
-  f(p.diameter), f(p.density), f(p.mass), f(p.id), f(p.group), f(p.last_hit);
+  f(p.diameter), f(p.density), f(p.mass), f(p.id), f(p.group), f(p.last_hit), f(p.weight), f(p.contact);
 }
 
 }  // namespace
@@ -27,13 +27,15 @@ void Particles::add(const Sphere& s) {
   if (remembers_hits) last_hit.push_back(-std::numeric_limits<double>::infinity());
   diameter.push_back(s.diameter);
   density.push_back(s.density);
-  mass.push_back(particle::sphere_mass(s.diameter, s.density));
+  mass.push_back(s.weight * particle::sphere_mass(s.diameter, s.density));
+  if (are_parcels) weight.push_back(s.weight), contact.push_back(s.diameter * std::sqrt(s.weight));
   id.push_back(s.id);
   group.push_back(s.group);
 }
 
 Sphere Particles::sphere(std::size_t i) const {
-  return {get(place, i), get(velocity, i), diameter[i], density[i], id[i], group[i]};
+  return {get(place, i), get(velocity, i),           diameter[i], density[i], id[i],
+          group[i],      are_parcels ? weight[i] : 1};
 }
 
 void Particles::keep_only(const std::vector<std::uint8_t>& keep) {

@@ -36,6 +36,8 @@ std::string series_heading(const Simulation& simulation) {
   for (std::size_t a = 0; a < names.size(); ++a)
     for (std::size_t b = a; b < names.size(); ++b)
       text += "," + io::csv_cell("collisions of " + names[a] + " and " + names[b]);
+  if (simulation.flow() != nullptr)
+    text += ",gas pressure at inlets [Pa],gas flow in [m3/s],gas flow out [m3/s],gas divergence";
   return text + "\n";
 }
 
@@ -66,6 +68,8 @@ std::string series_row(const Simulation& simulation) {
   for (std::size_t a = 0; a < n_groups; ++a)
     for (std::size_t b = a; b < n_groups; ++b)
       row.push_back(static_cast<double>(s.tally.by_groups[a * n_groups + b]));
+  if (const auto* flow = simulation.flow())
+    row.insert(row.end(), {flow->inlet_pressure(), flow->flow_in(), flow->flow_out(), flow->divergence()});
   return joined(row);
 }
 

@@ -70,6 +70,8 @@ io::SettingsTable<GroupSettings> group_table() {
       "number", "of spheres", [](auto& g) -> auto& { return g.number; }, 0, 20'000'000);
   t.quantity(
       "mass", "instead of their number", [](auto& g) -> auto& { return g.mass; }, "kg", 0, 1e6);
+  t.real(
+      "parcels", "spheres that each parcel stands for", [](auto& g) -> auto& { return g.parcels; }, 1, 1e12);
   t.word(
       "region", "box or region where they begin", [](auto& g) -> auto& { return g.region; });
   t.word(
@@ -118,6 +120,17 @@ std::string section_fault(const SectionSettings& s) {
   return s.low.x < s.high.x && s.low.y < s.high.y && s.low.z < s.high.z ? "" : "low below high";
 }
 
+io::SettingsTable<GasInletSettings> gas_inlet_table() {
+  io::SettingsTable<GasInletSettings> t;
+  t.word(
+       "side", "of a box", [](auto& s) -> auto& { return s.side; })
+      .require();
+  t.vector(
+       "velocity", "superficial", [](auto& s) -> auto& { return s.velocity; }, "m/s")
+      .require();
+  return t;
+}
+
 using Table = io::SettingsTable<SceneSettings>;
 
 void add_scene_rows(Table& t) {
@@ -144,7 +157,7 @@ void add_domain_rows(Table& t) {
 
 void add_gas_rows(Table& t) {
   t.word("gas.model", "what the spheres fly through", [](auto& s) -> auto& { return s.gas; },
-         {"none", "uniform", "frozen"});
+         {"none", "uniform", "frozen", "coupled"});
   t.quantity(
       "gas.density", "", [](auto& s) -> auto& { return s.gas_properties.density; }, "kg/m3", 1e-9, 1e5);
   t.quantity(
@@ -153,6 +166,9 @@ void add_gas_rows(Table& t) {
       "gas.velocity", "of a uniform gas", [](auto& s) -> auto& { return s.gas_velocity; }, "m/s");
   t.word(
       "gas.file", "of a frozen gas: a prediction (.hdf)", [](auto& s) -> auto& { return s.gas_file; });
+  t.vector(
+      "grid.cell", "size of a cell: hel, coupled gas, drag that asks for the voidage",
+      [](auto& s) -> auto& { return s.cell; }, "m");
 }
 
 void add_effect_rows(Table& t) {
@@ -209,6 +225,27 @@ void add_collision_rows(Table& t) {
       10000);
 }
 
+void add_granular_rows(Table& t) {
+  t.real(
+      "granular.packing", "of hel: the largest fraction of solids",
+      [](auto& s) -> auto& { return s.granular.packing; }, 0.1, 1);
+  t.real(
+      "granular.friction_from", "fraction from which solids rub",
+      [](auto& s) -> auto& { return s.granular.friction_from; }, 0.05, 1);
+  t.quantity(
+      "granular.friction_angle", "", [](auto& s) -> auto& { return s.granular.friction_angle; }, "rad", 0,
+      1.5);
+  t.flag(
+      "granular.damping", "collisions even out velocities within a cell",
+      [](auto& s) -> auto& { return s.granular.damping; });
+  t.word(
+      "granular.radial", "distribution", [](auto& s) -> auto& { return s.radial; },
+      particle::radial_names.names());
+  t.word(
+      "granular.viscosity", "of flight", [](auto& s) -> auto& { return s.viscosity; },
+      particle::flight_viscosity_names.names());
+}
+
 void add_output_rows(Table& t) {
   t.quantity(
       "output.every", "simulated time between outputs", [](auto& s) -> auto& { return s.output_every; }, "s",
@@ -227,9 +264,13 @@ Table make_table() {
   add_gas_rows(t);
   add_effect_rows(t);
   add_collision_rows(t);
+  add_granular_rows(t);
   add_output_rows(t);
   t.tables(
       "domain.boxes", "a union of boxes", [](auto& s) -> auto& { return s.boxes; }, box_table(), box_fault);
+  t.tables(
+      "gas.inlets", "sides where a coupled gas comes in", [](auto& s) -> auto& { return s.gas_inlets; },
+      gas_inlet_table());
   t.tables(
       "regions", "where spheres begin and come back", [](auto& s) -> auto& { return s.regions; }, box_table(),
       box_fault);
@@ -259,13 +300,22 @@ void expect_fits(const SceneSettings& s, const std::string& where) {
   expect(s.contact.friction == 0 || s.rotation, where, "collisions.friction without rotation",
          "effects.rotation = true");
   expect(s.drag == "none" || s.gas != "none", where, "effects.drag without a gas",
-         "gas.model = \"uniform\" or \"frozen\"");
+         "gas.model = \"uniform\", \"frozen\" or \"coupled\"");
   expect(!s.buoyancy || s.gas != "none", where, "effects.buoyancy without a gas",
-         "gas.model = \"uniform\" or \"frozen\"");
+         "gas.model = \"uniform\", \"frozen\" or \"coupled\"");
   expect(s.gas != "frozen" || !s.gas_file.empty(), where, "a frozen gas without gas.file",
          "a prediction (.hdf)");
   expect(s.walls != "dem" || s.collisions == "dem", where, "effects.walls = \"dem\" without soft spheres",
          "effects.collisions = \"dem\"");
+  expect(!s.needs_grid() || (s.cell.x > 0 && s.cell.y > 0 && s.cell.z > 0), where,
+         "missing setting 'grid.cell'", "the size of a cell");
+  expect(s.granular.friction_from < s.granular.packing, where, "granular.friction_from",
+         "less than granular.packing");
+  expect(!s.has_parcels() || (s.collisions != "dem" && s.collisions != "helscm_document"), where,
+         "parcels in a collision model of single spheres", "effects.collisions = \"hel\" or \"helscm\"");
+  expect(s.gas != "coupled" || s.drag != "none", where, "a coupled gas without effects.drag", "a drag law");
+  expect(s.gas_inlets.empty() || s.gas == "coupled", where, "gas.inlets without a coupled gas",
+         "gas.model = \"coupled\"");
   expect(s.recirculation.empty() || !s.outlets.empty(), where, "effects.recirculation without outlets",
          "domain.outlets");
   for (const auto& format : s.formats) expect(format == "vtp", where, "unknown output format", "vtp");
@@ -283,6 +333,15 @@ Body BoxSettings::body() const {
   if (top_low.size() == 2 && top_high.size() == 2)
     shape.top = {{{top_low[0], top_low[1]}, {top_high[0], top_high[1]}}};
   return body_of(shape);
+}
+
+bool SceneSettings::has_parcels() const {
+  return std::ranges::any_of(groups, [](const GroupSettings& g) { return g.parcels > 1; });
+}
+
+bool SceneSettings::needs_grid() const {
+  const bool knows_voidage = drag != "none" && particle::needs_voidage(drag_names.value<UsageError>(drag));
+  return gas == "coupled" || collisions == "hel" || knows_voidage;
 }
 
 std::int64_t SceneSettings::n_steps() const {

@@ -59,7 +59,7 @@ std::shared_ptr<const particle::CollisionModel> model_of(const SceneSettings& s,
   return particle::CollisionBundle::read(s.folder / s.collision_model).model;
 }
 
-MoverSettings mover_of(const SceneSettings& s, int n_threads) {
+MoverSettings mover_of(const SceneSettings& s, std::shared_ptr<const CellGrid> grid, int n_threads) {
   MoverSettings m;
   m.collisions = collision_names.value<UsageError>(s.collisions);
   m.walls = s.wall_law;
@@ -67,6 +67,14 @@ MoverSettings mover_of(const SceneSettings& s, int n_threads) {
   m.steps_per_contact = s.steps_per_contact;
   m.n_threads = n_threads;
   if (m.collisions == Collisions::none) return m;
+  if (m.collisions == Collisions::hel) {
+    m.grid = std::move(grid);
+    m.granular = s.granular;
+    m.granular.restitution = s.contact.restitution;
+    m.granular.radial = particle::radial_names.value<UsageError>(s.radial);
+    m.granular.viscosity = particle::flight_viscosity_names.value<UsageError>(s.viscosity);
+    return m;
+  }
   m.law = contact_of(s);
   if (m.collisions == Collisions::dem) return m;
   m.model = model_of(s, m.law);
@@ -98,6 +106,8 @@ std::unique_ptr<Effect> motion(const SceneSettings& s, const MoverSettings& m, M
       const double step = particle::step_times(m.law, 2 * fastest_of(s), ball, ball).step();
       return std::make_unique<Collide>(name, mover, 250, 6e-8 * std::max(1.0, s.time_step / step));
     }
+    case Collisions::hel:
+      return std::make_unique<Collide>(name, mover, 220, 2e-6);
     case Collisions::helscm:
       return std::make_unique<Collide>(name, mover, 150, 1.5e-7);
     case Collisions::helscm_document:
@@ -107,23 +117,21 @@ std::unique_ptr<Effect> motion(const SceneSettings& s, const MoverSettings& m, M
 }
 
 std::int64_t number_of(const GroupSettings& g, const Source& source, base::Seed seed) {
-  if (g.number) return *g.number;
+  // Parcels of equal weight: as many as come nearest to what was asked for.
+  if (g.number && *g.number > 0)
+    return std::max<std::int64_t>(1, std::llround(static_cast<double>(*g.number) / g.parcels));
+  if (g.number) return 0;
   double mass = 0;
   std::int64_t n = 0;
   while (mass < *g.mass && n < 20'000'000) {
     base::Random random(seed.derive(source.name).derive(static_cast<std::uint64_t>(n)));
-    mass += particle::sphere_mass(source.sizes.draw(random), source.density);
+    mass += source.weight * particle::sphere_mass(source.sizes.draw(random), source.density);
     ++n;
   }
   return n;
 }
 
 }  // namespace
-
-struct Simulation::Timed {
-  std::unique_ptr<Effect> effect;
-  double seconds = 0, calls = 0;
-};
 
 std::string digest_of(const SceneSettings& settings) {
   auto s = settings;
@@ -135,7 +143,9 @@ std::string digest_of(const SceneSettings& settings) {
 
 Simulation::Simulation(SceneSettings settings, int n_threads)
     : settings_(std::move(settings)), n_threads_(n_threads), domain_(domain_of(settings_)) {
-  const auto m = mover_of(settings_, n_threads_);
+  if (settings_.needs_grid()) grid_ = std::make_shared<CellGrid>(domain_, settings_.cell);
+  const auto m = mover_of(settings_, grid_, n_threads_);
+  state_.particles.are_parcels = settings_.has_parcels();
   state_.particles.rotates = settings_.rotation;
   state_.particles.remembers_hits = m.collisions == Collisions::helscm && m.contact_time > 0;
   place_groups();
@@ -180,8 +190,11 @@ void Simulation::place_groups() {
                   .arrangement = arrangement_names.value<UsageError>(g.arrangement),
                   .velocity = g.velocity,
                   .scatter = g.scatter,
-                  .over = g.over};
+                  .over = g.over,
+                  .weight = g.parcels};
     source.number = number_of(g, source, seed);
+    if (g.number && source.number > 0)
+      source.weight = static_cast<double>(*g.number) / static_cast<double>(source.number);
     sources_.push_back(source);
   }
   state_.n_groups = static_cast<std::int32_t>(group_names_.size());
@@ -201,11 +214,21 @@ void Simulation::add_forces() {
   const auto& s = settings_;
   if (s.gravity != Vec{}) add(gravity(s.gravity));
   if (s.buoyancy) add(buoyancy(s.gravity, s.gas_properties.density));
-  if (s.drag != "none") {
-    gas_ = s.gas == "frozen" ? frozen_gas(s.folder / s.gas_file, n_threads_) : uniform_gas(s.gas_velocity);
-    add(drag(drag_names.value<UsageError>(s.drag), s.gas_properties, *gas_, n_threads_));
-  }
+  if (s.drag != "none") add_gas(drag_names.value<UsageError>(s.drag));
   has_forces_ = !effects_.empty();
+}
+
+void Simulation::add_gas(DragLaw law) {
+  const auto& s = settings_;
+  if (s.gas == "coupled") {
+    std::vector<GasInlet> inlets;
+    for (const auto& inlet : s.gas_inlets) inlets.push_back({inlet.side, inlet.velocity});
+    flow_ = std::make_unique<GasFlow>(domain_, grid_, s.gas_properties, inlets);
+    add(coupled_gas(law, *flow_, n_threads_));
+    return;
+  }
+  gas_ = s.gas == "frozen" ? frozen_gas(s.folder / s.gas_file, n_threads_) : uniform_gas(s.gas_velocity);
+  add(drag(law, s.gas_properties, *gas_, particle::needs_voidage(law) ? grid_ : nullptr, n_threads_));
 }
 
 void Simulation::add_openings() {
@@ -229,7 +252,6 @@ void Simulation::apply(Timed& timed, double dt) {
   const double begin = seconds_now();
   timed.effect->apply(state_, dt);
   timed.seconds += seconds_now() - begin;
-  ++timed.calls;
 }
 
 // All forces' acceleration over a time.

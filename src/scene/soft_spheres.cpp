@@ -16,9 +16,8 @@ namespace elrom::scene {
 namespace {
 
 constexpr std::size_t block_size = 1024;
-constexpr double least_skin = 0.1, most_skin = 0.6;  // of the largest diameter
-constexpr double skin_steps = 60;                    // a list lasts half as many, where it may
-constexpr double usual_steps_per_contact = 20;       // of StepTimes::step()
+constexpr double look = 1.5e-9;                 // s, of a pair of the list in a step
+constexpr double usual_steps_per_contact = 20;  // of StepTimes::step()
 
 // Place and radius of a sphere side by side: what the search for contacts reads, in one piece.
 struct Ball {
@@ -159,8 +158,7 @@ class SoftSpheres final : public Mover {
     if (domain_.images().any())
       for (std::size_t i = 0; i < p.size(); ++i) set(p.place, i, domain_.wrapped(get(p.place, i)));
     pack(p);
-    const double largest = *std::max_element(p.diameter.begin(), p.diameter.end());
-    skin_ = std::clamp(skin_steps * fastest_ * h, least_skin * largest, most_skin * largest);
+    skin_ = best_skin(p, fastest_ * h, look);
     neighbours_.build(p, domain_, skin_, settings_.n_threads);
     near_wall_.assign(p.size(), 0);
     for (const auto i : neighbours_.near_wall()) near_wall_[static_cast<std::size_t>(i)] = 1;

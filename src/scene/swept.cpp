@@ -19,9 +19,8 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr std::size_t block_size = 2048;
-constexpr double least_skin = 0.1, most_skin = 0.6;  // of the largest diameter
-constexpr double skin_steps = 20;  // a list lasts this many half steps of the fastest sphere, where it may
-constexpr double reserve = 1.2;    // a sphere may become this much faster before the step is cut
+constexpr double look = 1e-9;             // s, of a pair of the list in a step
+constexpr double reserve = 1.2;           // a sphere may become this much faster before the step is cut
 constexpr std::int64_t most_events = 20;  // a sphere, in the time it takes to cross the skin; more: jammed
 constexpr std::int32_t no_sphere = -1;
 
@@ -58,6 +57,9 @@ class Swept final : public Mover {
     if (p.size() == 0) return;
     begin_ = state.time;
     gone_.assign(domain_.has_outlets() ? p.size() : 0, 0);
+    if (!(greatest_speed_of(p) * dt < HUGE_VAL))
+      throw NumericalError(
+          Problem{.what = "a sphere's speed is no number any more", .advice = "take a shorter time step"});
     while (dt > 0) {
       const double fastest = reserve * greatest_speed_of(p);
       if (!fresh_ || (used_ > 0 && used_ + fastest * dt > 0.5 * skin_)) renew(state, fastest * dt);
@@ -71,7 +73,7 @@ class Swept final : public Mover {
   }
   void forget() override { fresh_ = false; }
   [[nodiscard]] std::size_t bytes() const override {
-    return neighbours_.bytes() + clock_.capacity() * sizeof(double) +
+    return neighbours_.bytes() + (clock_.capacity() + quiet_.capacity()) * sizeof(double) +
            stamp_.capacity() * sizeof(std::uint32_t) + near_wall_.capacity() + gone_.capacity() +
            queue_.capacity() * sizeof(Event);
   }
@@ -82,12 +84,14 @@ class Swept final : public Mover {
     auto& p = state.particles;
     if (domain_.images().any())
       for (std::size_t i = 0; i < p.size(); ++i) set(p.place, i, domain_.wrapped(get(p.place, i)));
-    const double largest = *std::max_element(p.diameter.begin(), p.diameter.end());
-    skin_ = std::clamp(skin_steps * travel, least_skin * largest, most_skin * largest);
+    skin_ = best_skin(p, travel, look);
     neighbours_.build(p, domain_, skin_, settings_.n_threads);
     neighbours_.with_both();
     near_wall_.assign(p.size(), 0);
     for (const auto i : neighbours_.near_wall()) near_wall_[static_cast<std::size_t>(i)] = 1;
+    quiet_.assign(p.size(), 0);
+    clock_.assign(p.size(), 0);
+    stamp_.resize(p.size());
     fresh_ = true;
     used_ = 0;
   }
@@ -95,9 +99,7 @@ class Swept final : public Mover {
   // Moves all spheres by `time`, or by less where one has become faster than `fastest`. @return by how much
   double part(State& state, double time, double fastest) {
     auto& p = state.particles;
-    clock_.assign(p.size(), 0);
-    stamp_.assign(p.size(), 0);
-    first_events(p, time);
+    first_events(p, time, used_ + fastest * time);
     auto left = most_events * static_cast<std::int64_t>(p.size()) + 1000;
     while (!queue_.empty()) {
       const Event event = pop();
@@ -116,32 +118,48 @@ class Swept final : public Mover {
     base::parallel_for(
         (p.size() + block_size - 1) / block_size, settings_.n_threads, [&](std::size_t block, int) {
           for (std::size_t i = block * block_size; i < std::min(p.size(), (block + 1) * block_size); ++i)
-            bring(p, i, time);
+            bring(p, i, time), clock_[i] = 0;
         });
     return time;
   }
 
-  void first_events(const Particles& p, double time) {
+  // @param travelled by any sphere at most, from the making of the list to the end of the part, m
+  void first_events(const Particles& p, double time, double travelled) {
     const std::size_t n_blocks = (p.size() + block_size - 1) / block_size;
     found_.resize(n_blocks);
     base::parallel_for(n_blocks, settings_.n_threads, [&](std::size_t block, int) {
       found_[block].clear();
-      for (std::size_t i = block * block_size; i < std::min(p.size(), (block + 1) * block_size); ++i) {
-        for (const auto j : neighbours_.above(i))
-          seek_pair(p, i, static_cast<std::size_t>(j), 0, time, found_[block]);
-        seek_wall(p, i, 0, time, found_[block]);
-      }
+      for (std::size_t i = block * block_size; i < std::min(p.size(), (block + 1) * block_size); ++i)
+        if (travelled >= quiet_[i]) quiet_[i] = used_ + first_events_of(p, i, time, found_[block]);
     });
     for (const auto& events : found_) queue_.insert(queue_.end(), events.begin(), events.end());
     std::make_heap(queue_.begin(), queue_.end());
+  }
+  // @return how far spheres may travel until this one can meet a wall or a partner with a larger number, m
+  double first_events_of(const Particles& p, std::size_t i, double time, std::vector<Event>& events) const {
+    double room = skin_;
+    if (near_wall_[i] != 0) {
+      room = std::max(0.0, domain_.room(get(p.place, i)) - 0.5 * p.diameter[i]);
+      seek_wall(p, i, 0, time, events);
+    }
+    double gap = 2 * room;
+    for (const auto number : neighbours_.above(i)) {
+      const auto j = static_cast<std::size_t>(number);
+      const Vec apart = apart_at(p, i, j, 0);
+      gap = std::min(gap, std::sqrt(dot(apart, apart)) - reach(p, i, j));
+      seek_pair(p, i, j, apart, 0, time, events);
+    }
+    return 0.5 * gap;
   }
 
   // What happens to a sphere next, from `now` on.
   void seek(const Particles& p, std::size_t i, double now, double time) {
     if (is_gone(i)) return;
     fresh_events_.clear();
-    for (const auto j : neighbours_.all(i))
-      seek_pair(p, i, static_cast<std::size_t>(j), now, time, fresh_events_);
+    for (const auto number : neighbours_.all(i)) {
+      const auto j = static_cast<std::size_t>(number);
+      seek_pair(p, i, j, apart_at(p, i, j, now), now, time, fresh_events_);
+    }
     seek_wall(p, i, now, time, fresh_events_);
     for (const auto& event : fresh_events_) {
       queue_.push_back(event);
@@ -149,13 +167,10 @@ class Swept final : public Mover {
     }
   }
 
-  void seek_pair(const Particles& p, std::size_t i, std::size_t j, double now, double time,
+  void seek_pair(const Particles& p, std::size_t i, std::size_t j, const Vec& apart, double now, double time,
                  std::vector<Event>& events) const {
     if (is_gone(i) || is_gone(j)) return;
-    Vec apart = place_at(p, j, now) - place_at(p, i, now);
-    if (domain_.images().any()) apart = domain_.images().nearest(apart);
-    const double in =
-        contact_time(apart, get(p.velocity, j) - get(p.velocity, i), 0.5 * (p.diameter[i] + p.diameter[j]));
+    const double in = contact_time(apart, get(p.velocity, j) - get(p.velocity, i), reach(p, i, j));
     if (now + in > time) return;
     const std::size_t a = std::min(i, j), b = std::max(i, j);
     events.push_back(
@@ -231,6 +246,13 @@ class Swept final : public Mover {
     const Vec v = get(p.velocity, static_cast<std::size_t>(i));
     return dot(v, v) > fastest * fastest;
   }
+  [[nodiscard]] static double reach(const Particles& p, std::size_t i, std::size_t j) {
+    return 0.5 * (p.contact_diameter()[i] + p.contact_diameter()[j]);
+  }
+  [[nodiscard]] Vec apart_at(const Particles& p, std::size_t i, std::size_t j, double now) const {
+    const Vec apart = place_at(p, j, now) - place_at(p, i, now);
+    return domain_.images().any() ? domain_.images().nearest(apart) : apart;
+  }
   [[nodiscard]] Vec place_at(const Particles& p, std::size_t i, double now) const {
     return get(p.place, i) + (now - clock_[i]) * get(p.velocity, i);
   }
@@ -246,6 +268,7 @@ class Swept final : public Mover {
   bool fresh_ = false;
   double skin_ = 0, used_ = 0;  // of the list: m, and how much of it has been travelled
   double begin_ = 0;            // of the part, s
+  std::vector<double> quiet_;   // of each sphere: nothing happens before so much of the list is used, m
   std::vector<double> clock_;   // of each sphere: when it is where its place says, from the part's beginning
   std::vector<std::uint32_t> stamp_;  // events of each sphere so far: older ones are stale
   std::vector<std::uint8_t> near_wall_, gone_;

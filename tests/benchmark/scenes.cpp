@@ -1,8 +1,11 @@
 // bench-scenes: counts of collisions over time steps by each model, soft spheres as the yardstick; Haff's
 // law; energy; sphere steps a second.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "elrom/particle/drag.hpp"
 #include "elrom/scene/simulation.hpp"
@@ -21,7 +24,8 @@ struct Outcome {
 };
 
 // Two streams that cross at 20 degrees off the axis, 10 m/s, 12 ms.
-std::string crossing(int number, const std::string& collisions, double step) {
+// @param twin another run of the same: a speed that differs in its 13th digit
+std::string crossing(int number, const std::string& collisions, double step, int twin = 0) {
   const double edge = 0.0145 * std::cbrt(number / 12000.0);
   const auto region = [&](const char* name, double low, double high) {
     return std::string("\n[[regions]]\nname = \"") + name + "\"\nlow = [" + std::to_string(low) +
@@ -31,12 +35,12 @@ std::string crossing(int number, const std::string& collisions, double step) {
   const auto group = [&](const char* name, double u) {
     return std::string("\n[[particles]]\ngroup = \"") + name + "\"\nregion = \"" + name +
            "\"\ndiameter = \"315 um\"\nnumber = " + std::to_string(number / 2) + "\nvelocity = [" +
-           std::to_string(u) + ", 3.42, 0]\n";
+           fmt::format("{:.14g}", u) + ", 3.42, 0]\n";
   };
   return "[scene]\nname = \"crossing\"\nduration = 0.012\ntime_step = " + std::to_string(step * 1e9) +
          "e-9\n[effects]\ncollisions = \"" + collisions +
          "\"\n[collisions]\nrestitution = 0.9\nstiffness = 5000\n" + region("left", 0, 2 * edge) +
-         region("right", 2.2 * edge, 4.2 * edge) + group("left", 9.4) + group("right", -9.4);
+         region("right", 2.2 * edge, 4.2 * edge) + group("left", 9.4 + twin * 2e-12) + group("right", -9.4);
 }
 
 Outcome run(const std::string& text) {
@@ -63,6 +67,22 @@ Outcome run(const std::string& text) {
   out.collisions = static_cast<double>(simulation.state().tally.collisions);
   out.energy_ratio = kinetic_energy_of(p) / energy;
   return out;
+}
+
+// Counts of chaotic runs differ by chance: means over twins tell whether the step matters.
+Json counts_by_step(int number, int twins) {
+  Json rows = Json::array();
+  for (const double step : {1e-3, 1e-4, 1e-5}) {
+    std::vector<double> counts;
+    for (int twin = 0; twin < twins; ++twin)
+      counts.push_back(run(crossing(number, "helscm", step, twin)).collisions);
+    const double mean = std::accumulate(counts.begin(), counts.end(), 0.0) / twins;
+    double squared = 0;
+    for (const double count : counts) squared += (count - mean) * (count - mean) / (twins - 1);
+    rows.push_back(
+        {{"time_step_s", step}, {"twins", twins}, {"mean", mean}, {"deviation", std::sqrt(squared)}});
+  }
+  return rows;
 }
 
 Json json_of(const std::string& model, double step, const Outcome& out, double yardstick) {
@@ -143,6 +163,7 @@ Json measure(const benchmark::Arguments& arguments) {
     most = std::max(most, table[k]["collisions"].get<double>());
   }
   json["helscm_spread_of_counts"] = most / least - 1;
+  json["helscm_counts_of_twins"] = counts_by_step(arguments.small ? 800 : 12000, 4);
   json["haff_e_0.8"] = haff(0.8, {0.983438, 0.851252, 0.638403, 0.295837}, arguments.small);
   json["haff_e_0.9"] = haff(0.9, {0.991210, 0.917064, 0.779390, 0.480650}, arguments.small);
   const double n = arguments.small ? 800 : 12000;

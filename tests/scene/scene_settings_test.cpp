@@ -54,6 +54,12 @@ TEST(SceneSettings, MistakesAreToldWithLineAndNearestName) {
                parse_scene("[scene]\nduration = 1\ntime_step = 1\n", "s.toml"));
   EXPECT_ERROR(UsageError, "expected effects.rotation = true",
                parse_scene(with("[collisions]\nfriction = 0.3\n"), "s.toml"));
+  EXPECT_ERROR(UsageError, "missing setting 'grid.cell'",
+               parse_scene(with("[effects]\ncollisions = \"hel\"\n"), "s.toml"));
+  EXPECT_ERROR(UsageError, "collision model of single spheres",
+               parse_scene(small_scene + "parcels = 8\n", "s.toml", {"effects.collisions=dem"}));
+  EXPECT_ERROR(UsageError, "a coupled gas without effects.drag",
+               parse_scene(with("[gas]\nmodel = \"coupled\"\n[grid]\ncell = [1, 1, 1]\n"), "s.toml"));
   EXPECT_ERROR(UsageError, "without a gas", parse_scene(with("[effects]\ndrag = \"stokes\"\n"), "s.toml"));
 }
 

@@ -204,7 +204,7 @@ TEST(SceneOpenings, LatticeIsDenserThanChance) {
 }
 
 const std::string busy =
-    "[domain]\noutlets = [\"box.z_high\"]\n[gas]\nmodel = \"uniform\"\nvelocity = [0, 0, 3]\n[output]\nevery = 0.002\n"
+    "[grid]\ncell = [0.005, 0.005, 0.005]\n[domain]\noutlets = [\"box.z_high\"]\n[gas]\nmodel = \"uniform\"\nvelocity = [0, 0, 3]\n[output]\nevery = 0.002\n"
     "checkpoint_every = 0.002\n[effects]\ndrag = \"schiller_naumann\"\ngravity = [0, 0, -9.81]\nrecirculation = \"bottom\"\nrotation = true\n";
 
 class SceneResume : public testing::TestWithParam<const char*> {
@@ -231,7 +231,7 @@ TEST_P(SceneResume, EndsInTheSameBytesAndThreadsToo) {
   EXPECT_GT(test::read_bytes(folder / "whole" / "checkpoint.elrom").size(), 10000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(, SceneResume, testing::Values("none", "dem", "helscm", "helscm_document"));
+INSTANTIATE_TEST_SUITE_P(, SceneResume, testing::Values("none", "dem", "hel", "helscm", "helscm_document"));
 
 TEST(SceneCheckpoint, OfAnotherSceneOrDamagedIsRefused) {
   Simulation one(scene("", 5), 1), other(scene("", 6), 1);
@@ -258,6 +258,38 @@ TEST(SceneHardCases, EndInFiniteNumbers) {
         EXPECT_LE(kinetic_energy_of(simulation.state().particles), energy * (1 + 1e-12))
             << collisions << number << step;
       }
+}
+
+TEST(SceneHardCases, DensePackingUnderGravityAtEveryStep) {
+  for (const auto* collisions : {"hel", "helscm", "helscm_document", "dem"})
+    for (const std::string step : {"1e-6", "1e-4", "1e-2"}) {
+      // Contacts ask for steps of 0.2 us.
+      if (step != "1e-6" && std::string(collisions) == "dem") continue;
+      const auto* duration = step == "1e-2" ? "0.02" : step == "1e-4" ? "1e-3" : "1e-5";
+      Simulation simulation(scene("[grid]\ncell = [0.002, 0.002, 0.002]\n[effects]\ngravity = [0, 0, -9.81]\n"
+                                  "collisions = \"" +
+                                      std::string(collisions) + "\"",
+                                  20000, "arrangement = \"lattice\"", step, duration),
+                            1);
+      run_all(simulation);
+      EXPECT_LT(greatest_speed_of(simulation.state().particles), 2) << collisions << step;
+      EXPECT_EQ(simulation.state().particles.size(), 20000u);
+    }
+}
+
+TEST(SceneHardCases, CornerHoldsWhatIsThrownIntoIt) {
+  for (const auto* collisions : {"none", "hel", "helscm", "helscm_document"}) {
+    Simulation simulation(
+        scene("[grid]\ncell = [0.002, 0.002, 0.002]\n[walls]\nnormal_restitution = 0.5\n"
+              "tangential_restitution = 0.5\n[effects]\ngravity = [-50, -50, -50]\ncollisions = \"" +
+                  std::string(collisions) + "\"",
+              100, "velocity = [-200, -200, -200]", "1e-3", "0.02"),
+        1);
+    run_all(simulation);
+    for (std::size_t i = 0; i < 100; ++i)
+      EXPECT_GT(simulation.domain().distance(get(simulation.state().particles.place, i)), 0.1574e-3)
+          << collisions;
+  }
 }
 
 TEST(SceneHardCases, TenSizesFrom50UmTo5Mm) {

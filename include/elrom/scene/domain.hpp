@@ -88,6 +88,10 @@ class Domain {
   [[nodiscard]] const Body& body(
       const std::string& name) const;  ///< @throws UsageError with the nearest name
 
+  /// @param name "box.z_low" @throws UsageError with the nearest name
+  [[nodiscard]] const Side& named_side(const std::string& name) const;
+  [[nodiscard]] double area_of(const Side& side) const;  ///< m2; of a side of this domain's
+
   /// Where a centre on a straight path first comes within `radius` of a wall or passes an outlet.
   struct Exit {
     double time = std::numeric_limits<double>::infinity();
@@ -99,7 +103,6 @@ class Domain {
 
  private:
   [[nodiscard]] std::size_t deepest(const Vec& place, double radius) const;
-  Side& side(const std::string& name);
 
   std::vector<Body> bodies_;
   Images images_;

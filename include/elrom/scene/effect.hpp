@@ -11,6 +11,7 @@
 #include <string>
 
 #include "elrom/scene/gas.hpp"
+#include "elrom/scene/gas_flow.hpp"
 #include "elrom/scene/mover.hpp"
 
 namespace elrom::scene {
@@ -28,6 +29,8 @@ class Effect {
   virtual void apply(State& state, double dt) = 0;
   /// Held now, beyond the spheres' own arrays.
   [[nodiscard]] virtual std::size_t bytes() const { return 0; }
+  virtual void save(io::TensorFile&) const {}
+  virtual void load(const io::TensorFile&) {}
 
   [[nodiscard]] const std::string& name() const { return name_; }  ///< "drag wen_yu"
   [[nodiscard]] Phase phase() const { return phase_; }
@@ -45,13 +48,15 @@ class Effect {
 /// Weight of the gas that a sphere displaces. @param gas_density kg/m3
 [[nodiscard]] std::unique_ptr<Effect> buoyancy(const Vec& gravity, double gas_density);
 
-enum class DragLaw { stokes, schiller_naumann };
-inline constexpr base::EnumNames<DragLaw, 2> drag_names{
-    "drag law", {{DragLaw::stokes, "stokes"}, {DragLaw::schiller_naumann, "schiller_naumann"}}};
+using particle::drag_names;
+using particle::DragLaw;
 /// After all other forces: with rate b = drag / mass and the others' acceleration a, the velocity moves
 /// towards u + a/b as exp(-b t), which is exact for a constant rate and has the right rest state at any step.
-/// @param field lives longer
+/// @param field lives longer @param grid where laws that ask for it find the voidage; null for others
 [[nodiscard]] std::unique_ptr<Effect> drag(DragLaw law, const particle::Gas& gas, const GasField& field,
-                                           int n_threads);
+                                           std::shared_ptr<const CellGrid> grid, int n_threads);
+/// Drag, the pressure's gradient and the gas that answers them (gas_flow.hpp). The last of the forces.
+/// What spheres get the gas loses, to rounding. @param flow lives longer
+[[nodiscard]] std::unique_ptr<Effect> coupled_gas(DragLaw law, GasFlow& flow, int n_threads);
 
 }  // namespace elrom::scene

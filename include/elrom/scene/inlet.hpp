@@ -44,6 +44,7 @@ struct Source {
   Vec velocity;        ///< m/s
   double scatter = 0;  ///< standard deviation of each component, m/s
   double over = 0;     ///< s: so long they come, evenly; 0: all are there at the start
+  double weight = 1;   ///< spheres that each stands for; it takes the room of them all
 };
 
 /// Spheres so far in space, to ask where another one fits.

@@ -5,6 +5,8 @@
 //   none              straight paths; spheres pass through each other
 //   dem               soft spheres: contact forces, with history, in steps that the contact law asks for
 //   helscm            swept: collisions at their exact times on straight paths, by a collision model
+//   hel               parcels that feel each other as a continuum: stress of kinetic theory and friction, cells
+//                     that are full let nobody in (granular_stress.hpp)
 //   helscm_document   the source's: at the end of the step, spheres that overlap collide once with the mean
 // of
 //                     their partners. Its count depends on the step; kept to be compared with.
@@ -20,16 +22,18 @@
 #include "elrom/base/enum_names.hpp"
 #include "elrom/io/tensor_file.hpp"
 #include "elrom/particle/collision_model.hpp"
-#include "elrom/scene/domain.hpp"
+#include "elrom/particle/kinetic_theory.hpp"
+#include "elrom/scene/cell_grid.hpp"
 #include "elrom/scene/particles.hpp"
 
 namespace elrom::scene {
 
-enum class Collisions { none, dem, helscm, helscm_document };
-inline constexpr base::EnumNames<Collisions, 4> collision_names{
+enum class Collisions { none, dem, hel, helscm, helscm_document };
+inline constexpr base::EnumNames<Collisions, 5> collision_names{
     "collisions",
     {{Collisions::none, "none"},
      {Collisions::dem, "dem"},
+     {Collisions::hel, "hel"},
      {Collisions::helscm, "helscm"},
      {Collisions::helscm_document, "helscm_document"}}};
 enum class Walls { reflect, dem };
@@ -98,7 +102,9 @@ struct MoverSettings {
   /// helscm: a sphere that collides again within this time loses no energy in it (Luding & McNamara 1998),
   /// so that spheres at rest on each other do not collide for ever, s
   double contact_time = 0;
-  int steps_per_contact = 20;  ///< dem
+  int steps_per_contact = 20;                 ///< dem
+  std::shared_ptr<const CellGrid> grid = {};  ///< hel
+  particle::GranularLaw granular = {};        ///< hel
   int n_threads = 1;
 };
 

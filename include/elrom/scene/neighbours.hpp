@@ -3,11 +3,13 @@
 // for as long as no two spheres have come nearer to each other than it by more than the skin.
 //
 // Spheres are sorted into levels by size (a factor of two each) with cells of their own size, so that a few
-// large spheres among many small ones cost no more than their share.
+// large spheres among many small ones cost no more than their share. Each looks at its own cell and at half of
+// those around. A list that is made again allocates nothing, where it is no longer than before.
 //
 // Thread rule: build() uses threads of its own; the list is the same for any number of them.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,6 +20,8 @@ namespace elrom::scene {
 
 class NeighbourList {
  public:
+  NeighbourList();
+  ~NeighbourList();
   /// Finds all pairs nearer than r_i + r_j + skin, and the spheres whose wall is nearer than r + skin.
   void build(const Particles& particles, const Domain& domain, double skin, int n_threads);
 
@@ -41,9 +45,19 @@ class NeighbourList {
   [[nodiscard]] static std::span<const std::int32_t> part(const Rows& rows, std::size_t i) {
     return {rows.partner.data() + rows.begin[i], rows.begin[i + 1] - rows.begin[i]};
   }
+  struct Search;
+  void sort_pairs(std::size_t n);
+  void find_walls(const Particles& particles, const Domain& domain, double skin, int n_threads);
+
   Rows above_, all_;
   std::vector<std::int32_t> near_wall_;
+  std::unique_ptr<Search> search_;
 };
+
+/// The skin with which a list costs least over its life, m: a wide one lasts longer and holds more pairs.
+/// From the mean diameter and the spheres that one has around it, so that dilute scenes get wide skins.
+/// @param travel of the fastest sphere in a step, m @param look seconds that a pair of the list costs in a step
+[[nodiscard]] double best_skin(const Particles& particles, double travel, double look);
 
 /// Pairs that overlap by more than `share` of the smaller diameter, and the first of them.
 struct Overlaps {

@@ -33,12 +33,13 @@ inline Vec cross(const Vec& a, const Vec& b) {
 inline Vec get(const Vectors& v, std::size_t i) { return {v[0][i], v[1][i], v[2][i]}; }
 inline void set(Vectors& v, std::size_t i, const Vec& a) { v[0][i] = a.x, v[1][i] = a.y, v[2][i] = a.z; }
 
-/// A sphere alone: what an inlet adds and an outlet takes.
+/// A sphere alone, or a parcel: what an inlet adds and an outlet takes.
 struct Sphere {
   Vec place, velocity;
   double diameter = 0, density = 0;
   std::int64_t id = 0;
   std::int32_t group = 0;
+  double weight = 1;  ///< spheres that a parcel stands for
 };
 
 struct Particles {
@@ -46,19 +47,33 @@ struct Particles {
   Vectors spin;                  ///< rad/s; empty without rotation
   std::vector<double> diameter;  ///< m
   std::vector<double> density;   ///< kg/m3
-  std::vector<double> mass;      ///< kg
+  std::vector<double> mass;      ///< kg, of all spheres of a parcel
   std::vector<std::int64_t> id;  ///< of its own, for as long as the scene runs
   std::vector<std::int32_t> group;
   std::vector<double> last_hit;  ///< s, when a sphere last collided; empty unless a collision model asks
-  bool rotates = false, remembers_hits = false;
+  /// Spheres that each parcel stands for, all of its diameter; empty where all are spheres.
+  std::vector<double> weight;
+  bool rotates = false, remembers_hits = false, are_parcels = false;
 
   [[nodiscard]] std::size_t size() const { return id.size(); }
+  /// At which two of them collide, m: a parcel of w spheres at d sqrt(w), so that between its collisions it
+  /// flies as far as each of its spheres would, n/w pi (d sqrt(w))^2 = n pi d^2.
+  [[nodiscard]] const std::vector<double>& contact_diameter() const {
+    return are_parcels ? contact : diameter;
+  }
+  /// Of one sphere of a parcel, kg.
+  [[nodiscard]] double sphere_mass(std::size_t i) const {
+    return are_parcels ? mass[i] / weight[i] : mass[i];
+  }
+  [[nodiscard]] double volume(std::size_t i) const { return mass[i] / density[i]; }  ///< of its spheres, m3
   void add(const Sphere& sphere);
   /// Copy of one. @param i < size()
   [[nodiscard]] Sphere sphere(std::size_t i) const;
   /// Those for which keep[i] is 0 go; the others stay in their order.
   void keep_only(const std::vector<std::uint8_t>& keep);
   [[nodiscard]] std::size_t bytes() const;
+
+  std::vector<double> contact;  ///< contact_diameter() of parcels
 };
 
 /// Sums over all spheres.

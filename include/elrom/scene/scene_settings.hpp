@@ -38,6 +38,7 @@ struct GroupSettings {
   double density = 1000;                    ///< kg/m3
   std::optional<std::int64_t> number;
   std::optional<double> mass;  ///< kg, instead of the number
+  double parcels = 1;          ///< spheres that each stands for
   std::string region;          ///< empty: the first box
   std::string arrangement = "random";
   Vec velocity;        ///< m/s
@@ -52,6 +53,12 @@ struct SectionSettings {
   std::vector<double> cells{1, 1, 1};  ///< in x, y, z
 };
 
+/// Gas that comes in through a side.
+struct GasInletSettings {
+  std::string side;  ///< "box.z_low"
+  Vec velocity;      ///< m/s, superficial
+};
+
 struct SceneSettings {
   std::string name = "scene";
   double duration = 0, time_step = 0;  ///< s
@@ -60,10 +67,14 @@ struct SceneSettings {
   std::vector<BoxSettings> boxes, regions;
   std::vector<std::string> outlets, openings, periodic;
 
-  std::string gas = "none";  ///< none, uniform, frozen
+  std::string gas = "none";  ///< none, uniform, frozen, coupled
   particle::Gas gas_properties;
   Vec gas_velocity;  ///< m/s
   std::string gas_file;
+  std::vector<GasInletSettings> gas_inlets;
+  Vec cell;  ///< of the grid, m
+  particle::GranularLaw granular;
+  std::string radial = "lun", viscosity = "gidaspow";
 
   std::vector<GroupSettings> groups;
 
@@ -88,6 +99,9 @@ struct SceneSettings {
   std::filesystem::path folder;  ///< that files are named from: the scene's own
 
   [[nodiscard]] std::int64_t n_steps() const;
+  [[nodiscard]] bool has_parcels() const;
+  /// Whether an effect needs the grid.
+  [[nodiscard]] bool needs_grid() const;
   /// How many steps between outputs or checkpoints: at least 1. @param every s; 0: all
   [[nodiscard]] std::int64_t steps_in(double every) const;
 };

@@ -35,6 +35,8 @@ class Simulation {
   [[nodiscard]] const Domain& domain() const { return domain_; }
   [[nodiscard]] const std::vector<std::string>& group_names() const { return group_names_; }
   [[nodiscard]] bool done() const { return state_.step >= settings_.n_steps(); }
+  /// The gas of gas.model = "coupled"; else null.
+  [[nodiscard]] const GasFlow* flow() const { return flow_.get(); }
   /// Spheres that are still to come.
   [[nodiscard]] std::int64_t due() const;
 
@@ -50,9 +52,13 @@ class Simulation {
   void load(const io::TensorFile& file);
 
  private:
-  struct Timed;
+  struct Timed {
+    std::unique_ptr<Effect> effect;
+    double seconds = 0;
+  };
   void add(std::unique_ptr<Effect> effect);
   void add_forces();
+  void add_gas(DragLaw law);
   void add_openings();
   void place_groups();
   void push(double dt);
@@ -66,7 +72,9 @@ class Simulation {
   std::vector<std::string> group_names_;
   std::vector<Source> sources_;
   std::vector<std::int64_t> placed_;  // of each source; effects hold on to them
+  std::shared_ptr<CellGrid> grid_;    // only where an effect asks for it
   std::unique_ptr<GasField> gas_;
+  std::unique_ptr<GasFlow> flow_;
   std::unique_ptr<Mover> mover_;
   std::vector<Timed> effects_;
   State state_;
