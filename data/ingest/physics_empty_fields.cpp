@@ -1,5 +1,5 @@
 // Fields that say nothing of their own: one value in every cell, and a velocity that is a copy of another
-// one, as it is or as a line of it (other unit, other frame). Phases may share a temperature, but no velocity.
+// one, as it is or as a line of it (other unit, other frame). Phases may share a temperature, no velocity.
 
 #include <fmt/format.h>
 

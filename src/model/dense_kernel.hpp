@@ -15,7 +15,7 @@ namespace elrom::model {
 
 /// Rows are padded to a multiple of this, and memory is aligned to it.
 inline constexpr std::size_t lane = 16;
-/// Rows of one pass, so that its activations stay in the second-level cache: 66 planes of the furnace are one.
+/// Rows of one pass, whose activations stay in the second-level cache: 66 planes of the furnace are one.
 inline constexpr std::size_t block_rows = 5 * lane;
 [[nodiscard]] constexpr std::size_t padded(std::size_t n_rows) { return (n_rows + lane - 1) / lane * lane; }
 

@@ -121,10 +121,10 @@ TEST(Guard, AnInputOffTheLineOfTheOthersIsEdgeAndFartherOffOutside) {
   EXPECT_EQ(guard.assess(std::array{140.0, 14.0, 180e-6}).verdict, Verdict::inside);
   const auto edge = guard.assess(std::array{140 + 9.5, 14.0, 180e-6});
   EXPECT_EQ(edge.verdict, Verdict::edge) << edge.reason;
-  const auto outside = guard.assess(std::array{140 + 16.0, 14.0, 180e-6});
+  const auto outside = guard.assess(std::array{140 + 22.0, 14.0, 180e-6});
   EXPECT_EQ(outside.verdict, Verdict::outside) << outside.reason;
   EXPECT_THAT(outside.reason,
-              ::testing::MatchesRegex("fuel 14 kg/s: 15.[0-9]+ .- .*|air 561.6 t/h: 50. .- .*"));
+              ::testing::MatchesRegex("fuel 14 kg/s: 15.[0-9]+ .- .*|air 583.2 t/h: 50. .- .*"));
 }
 
 TEST(Guard, AlongTheLineItIsInsideAsFarAsTheTrainingCasesGo) {

@@ -56,7 +56,7 @@ class OperatingLine {
   /// Of every input, given all the others, (n_inputs). @param inputs finite, (n_inputs)
   [[nodiscard]] std::vector<UsualInput> usual(std::span<const double> inputs) const;
   /// Deviations from which on an input is unusual: what 2.5 % of the learned cases exceed when each is
-  /// judged by the others, or less, down to 2.3 (1 + (8 / n)^2), as long as not more than most_flagged() are flagged.
+  /// judged by the others, or less, down to 2.3 (1 + (8 / n)^2), while no more than most_flagged() are.
   [[nodiscard]] double limit() const { return limit_; }
   /// Deviations from which on no healthy case was met: 1.6 times the limit, more of few cases.
   [[nodiscard]] double far_limit() const;
