@@ -7,8 +7,8 @@
 
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
+#include "elrom/field/user_unit.hpp"
 #include "summary.hpp"
-#include "user_unit.hpp"
 
 namespace elrom::fields {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "elrom/base/text.hpp"
+#include "elrom/field/user_unit.hpp"
 #include "elrom/io/csv.hpp"
-#include "user_unit.hpp"
 
 namespace elrom::fields {
 namespace {
