@@ -162,15 +162,15 @@ class FaultyClient {
 void work_off(FaultyClient& client, int i, base::Random& random) {
   const auto name = "s" + std::to_string(i);
   const Json scenario{{"name", name}, {"inputs", {{"steam [kg/s]", i}}}};
-  const auto made = client.write("/scenarios", scenario, "scenario " + name);
+  const auto made = client.write("/scenarios", scenario, "scenario-" + name);
   if (made.status != 201) return;
   const auto run =
-      client.write("/runs", {{"scenario", Json::parse(made.body)["id"]}, {"model", name}}, "run " + name);
+      client.write("/runs", {{"scenario", Json::parse(made.body)["id"]}, {"model", name}}, "run-" + name);
   if (run.status != 201) return;
   int attempt = 0;
   const auto take = [&](int lease_s) {
     return client.write("/claims", {{"model", name}, {"worker", "w"}, {"lease_s", lease_s}},
-                        "claim " + name + " " + std::to_string(attempt++));
+                        "claim-" + name + "-" + std::to_string(attempt++));
   };
   if (random.below(10) == 0) (void)take(1);  // this master is dead
   for (int n_looks = 0; n_looks < 100; ++n_looks) {
@@ -184,7 +184,7 @@ void work_off(FaultyClient& client, int i, base::Random& random) {
                        {"state", "done"},
                        {"result", {{"version", "1"}, {"document", {{"number", i}}}}}};
     const auto done = client.write("/runs/" + held["id"].dump() + "/outcome", outcome,
-                                   "outcome " + name + " " + std::to_string(attempt));
+                                   "outcome-" + name + "-" + std::to_string(attempt));
     if (done.status != 409) return;  // else the server was away for longer than the lease
   }
 }
@@ -366,6 +366,7 @@ Load load(const Place& place, const Json& inputs, double seconds) {
       result.errors += n_errors;
     });
   clients.clear();
+  std::ranges::sort(times);
   result.requests = times.size();
   result.median_ms = median(times);
   result.p99_ms = times[static_cast<std::size_t>(0.99 * static_cast<double>(times.size() - 1))];

@@ -39,7 +39,7 @@ TEST(Service, WhatIsOutsideTheTrainedRangeGoesOnMarked) {
 
   EXPECT_EQ(made.status, 201);
   EXPECT_EQ(json_of(made)["verdict"], "outside");
-  EXPECT_THAT(json_of(made)["reason"].get<std::string>(), HasSubstr("500"));
+  EXPECT_THAT(json_of(made)["reason"].get<std::string>(), HasSubstr("flow_0 1800 t/h"));
 }
 
 TEST(Service, WhatNoFurnaceCanHaveGoesIntoQuarantineAndToNoModel) {
@@ -52,7 +52,7 @@ TEST(Service, WhatNoFurnaceCanHaveGoesIntoQuarantineAndToNoModel) {
 
   EXPECT_EQ(refused.status, 422);
   EXPECT_THAT(json_of(refused)["what"].get<std::string>(), HasSubstr("impossible"));
-  EXPECT_THAT(json_of(refused)["found"].get<std::string>(), HasSubstr("-5"));
+  EXPECT_THAT(json_of(refused)["found"].get<std::string>(), HasSubstr("-18 t/h"));
   const auto kept = json_of(served.call("GET", json_of(refused)["quarantine"]));
   EXPECT_EQ(kept["kind"], "scenario");
   EXPECT_THAT(kept["reason"].get<std::string>(), HasSubstr("impossible"));

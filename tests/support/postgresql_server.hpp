@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -80,6 +81,7 @@ class PostgresqlServer {
   [[nodiscard]] pid_t begin(const std::vector<std::string>& command) const {
     const auto* user = owner();
     const auto log = (folder_ / "log.txt").string();
+    std::fflush(nullptr);  // or the child writes what is ours once more
     const pid_t child = ::fork();
     if (child != 0) return child;
     if (user != nullptr && (::setgid(user->pw_gid) != 0 || ::setuid(user->pw_uid) != 0)) ::_exit(126);
