@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <csignal>
 #include <cstdio>
 #include <thread>
 
@@ -89,6 +90,7 @@ void attend(serve::Service& service, const std::stop_token& stop) {
 int serve_until_stopped(const ServeOptions& options) {
   constexpr double grace_s = 30;
   const auto stop = base::interrupt_token();
+  std::signal(SIGPIPE, SIG_IGN);  // whoever read our lines may be gone, and the server goes on
   serve::Service service(service_options(options));
   look_for_model(service);
   http::Server server({.address = options.address,

@@ -173,7 +173,7 @@ TEST_P(RepositoryOn, NoRunIsGivenToTwoMasters) {
   }
 }
 
-/// @return the last number that a writer, killed a moment after it acknowledged so many writes, had acknowledged
+/// A writer is killed a moment after so many acknowledged writes. @return the last one acknowledged; -1: none
 int kill_a_writer(const RepositoryOptions& options, int first, std::uint64_t n_writes,
                   std::uint64_t microseconds) {
   int ends[2];

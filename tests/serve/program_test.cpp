@@ -41,13 +41,14 @@ struct Started {
   http::Response call(const std::string& method, const std::string& target, const std::string& body = "",
                       const std::string& key = "k", const std::string& type = "application/json") const {
     http::Client client(serving->url());
-    return client.send({.method = method,
-                        .target = target,
-                        .headers = {{"Authorization", "Bearer " + token},
-                                    {"Content-Type", type},
-                                    {"Accept", "application/x-hdf5, application/json"},
-                                    {"Idempotency-Key", key}},
-                        .body = body});
+    return client.send(
+        {.method = method,
+         .target = target,
+         .headers = {{"Authorization", "Bearer " + token},
+                     {"Content-Type", type},
+                     {"Accept", target == "/predictions" ? "application/x-hdf5" : "application/json"},
+                     {"Idempotency-Key", key}},
+         .body = body});
   }
   [[nodiscard]] static std::string inputs() {
     Json inputs;

@@ -1,6 +1,6 @@
 #pragma once
-// One case as a JSON text gives it: {"case": ..., "load": ..., "inputs": {"primary_air [kg/s]": 161.1, ...}}, by
-// the rules of read_cases(). For those who get cases from elsewhere than from files.
+// One case as a JSON text gives it: {"case": ..., "load": ..., "inputs": {"primary_air [kg/s]": 161.1, ...}},
+// by the rules of read_cases(). For those who get cases from elsewhere than from files.
 //
 // Thread rule: pure functions.
 
