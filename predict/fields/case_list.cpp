@@ -7,8 +7,8 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "possible_inputs.hpp"
-#include "user_unit.hpp"
+#include "elrom/field/possible_inputs.hpp"
+#include "elrom/field/user_unit.hpp"
 
 namespace elrom::fields {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
+#include "elrom/field/user_unit.hpp"
 #include "summary.hpp"
 
 namespace elrom::fields {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "elrom/base/text.hpp"
+#include "elrom/field/user_unit.hpp"
 #include "elrom/io/csv.hpp"
 
 namespace elrom::fields {

@@ -1,5 +1,6 @@
 #include "cases_tree.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -8,6 +9,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
+#include "elrom/field/case_json.hpp"
 #include "elrom/io/csv.hpp"
 #include "elrom/io/toml.hpp"
 
@@ -156,3 +158,23 @@ std::vector<CaseInputs> read_cases_toml(const std::filesystem::path& path, const
 }
 
 }  // namespace elrom::field::detail
+
+namespace elrom::field {
+
+CaseInputs parse_case(const std::string& json, const std::string& where, const InputSchema& schema) {
+  return detail::resolve(detail::raw_case(detail::parse_json(json, where), where, 0), schema);
+}
+
+InputSchema declared_schema(const std::string& json, const std::string& where) {
+  const auto raw = detail::raw_case(detail::parse_json(json, where), where, 0);
+  std::vector<InputInfo> inputs;
+  for (const auto& [key, value] : raw.inputs) {
+    const auto [name, symbol] = base::split_unit(key);
+    if (std::ranges::find(inputs, name, &InputInfo::name) != inputs.end())
+      detail::fail("boundary condition '" + name + "' appears twice", raw.where);
+    inputs.push_back(detail::input_info(name, symbol.empty() ? "1" : symbol, raw.where));
+  }
+  return InputSchema(std::move(inputs));
+}
+
+}  // namespace elrom::field

@@ -41,6 +41,17 @@ TEST(Error, CarriesTheExitStatusOfItsKind) {
   EXPECT_EQ(NotBuiltError("x").status(), ExitStatus::not_built);
 }
 
+TEST(Error, KeepsItsPartsWhenItIsCopied) {
+  const InputError original(
+      {.what = "wrong unit", .where = "a.h5", .found = "'kPa'", .advice = "convert it"});
+  const Error copy = original;
+
+  EXPECT_EQ(copy.problem().what, "wrong unit");
+  EXPECT_EQ(copy.problem().found, "'kPa'");
+  EXPECT_EQ(copy.problem().message(), copy.what());
+  EXPECT_EQ(InputError("a sentence").problem().what, "a sentence");
+}
+
 TEST(Check, ThrowsOnlyForAFalseCondition) {
   EXPECT_NO_THROW(check(true, "fine"));
   EXPECT_THROW(check(false, "broken"), std::logic_error);

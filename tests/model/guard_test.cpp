@@ -58,6 +58,16 @@ TEST(Guard, TrainingCasesFindThemselvesAsNearest) {
   }
 }
 
+TEST(Guard, TellsTheTrainedRangeOfEachInput) {
+  const Cases cases;
+  const auto guard = cases.guard();
+
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    EXPECT_EQ(guard.low()[static_cast<std::size_t>(j)], cases.inputs.col(j).minCoeff());
+    EXPECT_EQ(guard.high()[static_cast<std::size_t>(j)], cases.inputs.col(j).maxCoeff());
+  }
+}
+
 TEST(Guard, AnInputFarOutOfRangeIsOutsideAndNamedInTheUsersUnit) {
   const auto result = Cases().guard().assess(std::array{300.0, 14.0, 180e-6});
 

@@ -3,6 +3,7 @@
 // can be at fault or out of luck. Libraries throw these and never exit or
 // print; only base/app.hpp turns them into one line and an exit status.
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -38,11 +39,17 @@ struct Problem {
 
 class Error : public std::runtime_error {
  public:
-  Error(ExitStatus status, const Problem& problem) : std::runtime_error(problem.message()), status_(status) {}
+  Error(ExitStatus status, const Problem& problem)
+      : std::runtime_error(problem.message()),
+        status_(status),
+        problem_(std::make_shared<const Problem>(problem)) {}
   [[nodiscard]] ExitStatus status() const noexcept { return status_; }
+  /// The parts that what() says in one line, for answers that keep them apart.
+  [[nodiscard]] const Problem& problem() const noexcept { return *problem_; }
 
  private:
   ExitStatus status_;
+  std::shared_ptr<const Problem> problem_;  ///< shared: copying an exception must not throw
 };
 
 /// Every subtype is built from a Problem, or from one ready sentence.

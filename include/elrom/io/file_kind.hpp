@@ -53,6 +53,7 @@ inline constexpr FileKind collision_report{
 inline constexpr FileKind scene_checkpoint{
     "elrom-scene-checkpoint", {1, 0}, "remove it and simulate again with elrom-simulate"};
 inline constexpr FileKind scene_summary{"elrom-scene", {1, 0}, "simulate again with elrom-simulate"};
+inline constexpr FileKind repository{"elrom-repository", {1, 0}, "restore it from a backup"};
 
 inline constexpr std::array all{mesh,
                                 snapshots,
@@ -77,7 +78,8 @@ inline constexpr std::array all{mesh,
                                 collision_training,
                                 collision_report,
                                 scene_checkpoint,
-                                scene_summary};
+                                scene_summary,
+                                repository};
 }  // namespace kinds
 
 /// What a file says of itself; nothing where it says nothing.

@@ -50,6 +50,10 @@ class Guard {
   /// nearer is not changed by a bit. @param held (n_inputs)
   void hold(std::span<const double> inputs, std::span<double> held) const;
 
+  /// Trained range of each input, SI, (n_inputs).
+  [[nodiscard]] std::span<const double> low() const { return low_; }
+  [[nodiscard]] std::span<const double> high() const { return high_; }
+
   void save(io::TensorFile& file, const std::string& prefix) const;
   [[nodiscard]] static Guard load(const io::TensorFile& file, const std::string& prefix,
                                   const field::InputSchema& schema);

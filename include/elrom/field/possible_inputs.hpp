@@ -4,9 +4,9 @@
 
 #include "elrom/field/boundary_conditions.hpp"
 
-namespace elrom::fields {
+namespace elrom::field {
 
 /// @throws InputError naming case and input, in the user's unit
 void check_possible(const field::CaseInputs& inputs, const field::InputSchema& schema);
 
-}  // namespace elrom::fields
+}  // namespace elrom::field

@@ -1,4 +1,4 @@
-#include "possible_inputs.hpp"
+#include "elrom/field/possible_inputs.hpp"
 
 #include <array>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
-#include "user_unit.hpp"
+#include "elrom/field/user_unit.hpp"
 
-namespace elrom::fields {
+namespace elrom::field {
 namespace {
 
 constexpr double beyond_everything = 1e12;  // SI, of a unit without a row below
@@ -54,4 +54,4 @@ void check_possible(const field::CaseInputs& inputs, const field::InputSchema& s
   }
 }
 
-}  // namespace elrom::fields
+}  // namespace elrom::field

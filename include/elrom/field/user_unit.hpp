@@ -4,10 +4,10 @@
 #include "elrom/base/units.hpp"
 #include "elrom/field/boundary_conditions.hpp"
 
-namespace elrom::fields {
+namespace elrom::field {
 
 [[nodiscard]] inline const base::Unit& user_unit(const field::InputInfo& info) {
   return base::unit(info.display_unit.empty() ? info.unit : info.display_unit);
 }
 
-}  // namespace elrom::fields
+}  // namespace elrom::field

@@ -1,0 +1,146 @@
+#include <atomic>
+#include <span>
+
+#include "desk.hpp"
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/digest.hpp"
+#include "problem.hpp"
+
+namespace elrom::serve {
+namespace {
+
+using repository::Role;
+using repository::Transaction;
+
+std::string tag_of(const std::string& digest) { return "\"" + digest + "\""; }
+
+http::Response known(const std::string& digest, int status) {
+  auto response = json_response({{"digest", digest}}, status);
+  response.headers.emplace_back("ETag", tag_of(digest));
+  response.headers.emplace_back("Location", "/fields/" + digest);
+  return response;
+}
+
+/// Looked at by another process, beside its place, before it gets there. Removed at the end.
+class Upload {
+ public:
+  Upload(Desk& desk, const std::string& bytes, const std::string& digest)
+      : desk_(desk), folder_(desk.options.repository.folder / "incoming") {
+    std::filesystem::create_directories(folder_);
+    static std::atomic<int> counter{0};
+    file_ = folder_ / (digest + "." + std::to_string(counter++) + ".hdf");
+    base::write_text(file_, bytes);
+  }
+  ~Upload() {
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+  }
+  Upload(const Upload&) = delete;
+  Upload& operator=(const Upload&) = delete;
+
+  /// @throws InputError that does not say where on this machine it lay
+  void judge() const {
+    const auto model = desk_.model.now();
+    try {
+      desk_.options.judge_upload(file_, model ? model->bundle().mesh_digest() : "");
+    } catch (const InputError& error) {
+      std::string reason = error.what();
+      if (const auto at = reason.find(file_.string()); at != std::string::npos)
+        reason.replace(at, file_.string().size(), "the upload");
+      throw InputError(reason);
+    }
+  }
+  /// For people to look at.
+  [[nodiscard]] std::string put_aside(const std::string& digest) const {
+    const auto folder = desk_.options.repository.folder / "quarantine";
+    std::filesystem::create_directories(folder);
+    std::filesystem::rename(file_, folder / (digest + ".hdf"));
+    return "quarantine/" + digest + ".hdf";
+  }
+
+ private:
+  Desk& desk_;
+  std::filesystem::path folder_, file_;
+};
+
+http::Response put_aside(Desk& desk, const Ask& ask, const Upload& upload, const InputError& fault) {
+  const auto& digest = ask.parameters[0];
+  const Json document{{"file", upload.put_aside(digest)}, {"bytes", ask.request.body.size()}};
+  std::string place;
+  desk.repository.write([&](Transaction& transaction) {
+    const auto kept = transaction.quarantine(
+        {.kind = "fields", .document = document.dump(), .reason = fault.what(), .by = ask.caller.name});
+    place = "/quarantine/" + std::to_string(kept.id);
+  });
+  auto response = problem_response(fault);
+  auto problem = Json::parse(response.body);
+  problem["quarantine"] = place;
+  response.body = problem.dump() + "\n";
+  return response;
+}
+
+/// The digest is the key: however often it comes, the file is there once.
+http::Response put(Desk& desk, const Ask& ask) {
+  const auto& digest = ask.parameters[0];
+  const auto& bytes = ask.request.body;
+  if (!repository::is_digest(digest))
+    throw repository::NotFoundError(Problem{.what = "no digest", .expected = "64 hexadecimal digits"});
+  if (const auto found = base::sha256(std::as_bytes(std::span(bytes))); found != digest)
+    throw InputError(Problem{.what = "the body is not what its digest says",
+                             .found = found,
+                             .expected = digest,
+                             .advice = "it was changed or cut on its way: send it again"});
+  bool there = false;
+  desk.repository.read([&](Transaction& transaction) { there = transaction.fields(digest).has_value(); });
+  if (there) return known(digest, 200);
+  const Upload upload(desk, bytes, digest);
+  try {
+    upload.judge();
+  } catch (const InputError& fault) {
+    return put_aside(desk, ask, upload, fault);
+  }
+  (void)desk.repository.fields().put(bytes);
+  desk.repository.write([&](Transaction& transaction) {
+    transaction.know(
+        {.digest = digest, .bytes = static_cast<std::int64_t>(bytes.size()), .by = ask.caller.name});
+  });
+  return known(digest, 201);
+}
+
+http::Response get(Desk& desk, const Ask& ask) {
+  const auto& digest = ask.parameters[0];
+  bool there = false;
+  desk.repository.read([&](Transaction& transaction) { there = transaction.fields(digest).has_value(); });
+  if (!there) throw repository::NotFoundError(Problem{.what = "no such fields", .found = "'" + digest + "'"});
+  const http::Headers tag{{"ETag", tag_of(digest)}};
+  const auto* has = ask.request.header("If-None-Match");
+  if (has != nullptr && *has == tag_of(digest)) return {.status = 304, .headers = tag};
+  http::Response response{.headers = tag, .body = desk.repository.fields().read(digest)};
+  response.headers.emplace_back("Content-Type", "application/x-hdf5");
+  response.headers.emplace_back("Cache-Control", "private, max-age=31536000, immutable");
+  return response;
+}
+
+}  // namespace
+
+std::vector<Route> field_routes() {
+  return {{.method = "GET",
+           .path = "/fields/{digest}",
+           .role = Role::reader,
+           .summary = "A file of fields, HDF5",
+           .answers = {{200, "the file"}},
+           .answer = get,
+           .media = {"application/x-hdf5"},
+           .tagged = true},
+          {.method = "PUT",
+           .path = "/fields/{digest}",
+           .role = Role::model,
+           .summary = "Keeps a file of fields (kind elrom-prediction) under its SHA-256",
+           .answers = {{200, "it was here already"},
+                       {201, "kept"},
+                       {422, "another digest, or no fields of a furnace; the second is in quarantine"}},
+           .answer = put,
+           .body = BodyKind::hdf}};
+}
+
+}  // namespace elrom::serve

@@ -1,0 +1,54 @@
+#pragma once
+// What an answer is made of.
+
+#include <mutex>
+
+#include "elrom/serve/service.hpp"
+#include "json_body.hpp"
+#include "metrics.hpp"
+#include "route.hpp"
+
+namespace elrom::serve {
+
+struct Desk {
+  ServiceOptions options;
+  repository::Repository repository;
+  ResidentModel model;
+  Metrics metrics;
+  std::mutex hdf5;  ///< the library is not thread-safe
+
+  explicit Desk(ServiceOptions wanted)
+      : options(std::move(wanted)), repository(options.repository), model(options.model) {}
+};
+
+/// A JSON document as an answer.
+[[nodiscard]] http::Response json_response(const Json& document, int status = 200);
+/// The same with an ETag; 304 where the caller has it already.
+[[nodiscard]] http::Response tagged_response(const Ask& ask, const Json& document, const std::string& tag);
+
+/// A write by its Idempotency-Key: done once, answered again. Kept answers are JSON.
+[[nodiscard]] http::Response once(Desk& desk, const Ask& ask,
+                                  const std::function<repository::Answer(repository::Transaction&)>& work);
+
+/// Of a path's {id}. @throws NotFoundError for what is no number
+[[nodiscard]] repository::Id id_of(const Ask& ask, std::size_t i = 0);
+/// ?after=&limit=. @throws UsageError
+[[nodiscard]] repository::ListPart part_of(const Ask& ask);
+/// {"items": [...], "next": ...}: `next` is what to give as `after`, null at the end.
+[[nodiscard]] Json list_document(Json items, const repository::ListPart& part);
+
+// Records as documents.
+[[nodiscard]] Json document_of(const repository::Scenario& scenario);
+[[nodiscard]] Json document_of(const repository::Run& run);  ///< without its lease, which is a secret
+[[nodiscard]] Json document_of(const repository::ModelResult& result);
+[[nodiscard]] Json document_of(const repository::Quarantined& quarantined);
+[[nodiscard]] Json document_of(const repository::Token& token);
+
+// Answers, by what they are about.
+[[nodiscard]] std::vector<Route> server_routes();    // answers_server.cpp: health, metrics, tokens
+[[nodiscard]] std::vector<Route> scenario_routes();  // answers_scenarios.cpp
+[[nodiscard]] std::vector<Route> run_routes();       // answers_runs.cpp
+[[nodiscard]] std::vector<Route> field_routes();     // answers_fields.cpp
+[[nodiscard]] std::vector<Route> model_routes();     // answers_model.cpp
+
+}  // namespace elrom::serve

@@ -1,0 +1,35 @@
+#pragma once
+// A prediction as a caller wants it: numbers in JSON, float32 behind a JSON header, or the HDF5 file of
+// elrom-predict.
+//
+// Thread rule: any thread.
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "elrom/serve/resident_model.hpp"
+#include "json_body.hpp"
+
+namespace elrom::serve {
+
+struct Predicted {
+  const OpenModel& model;
+  const field::CaseInputs& inputs;
+  const model::Assessment& assessment;
+  const std::vector<std::size_t>& i_fields;
+  const OpenModel::Values& values;
+};
+
+/// {"case", "model", "verdict", "reason", "out_of_range", "unusual", "distance", "nearest", "planes",
+/// "columns", "level", "fields": {name: {"unit", "values": [...], "half_width": [...]}}}
+[[nodiscard]] std::string json_answer(const Predicted& predicted);
+/// u64 length of the header, little-endian; the header, which is the JSON above but with "values" and
+/// "half_width" the places [begin, end) of float32 in what follows; blanks up to a multiple of 8; the
+/// float32, little-endian.
+[[nodiscard]] std::string binary_answer(const Predicted& predicted);
+/// @param hdf5 held while the library works @param folder for the file on its way
+[[nodiscard]] std::string hdf_answer(const Predicted& predicted, std::mutex& hdf5,
+                                     const std::filesystem::path& folder);
+
+}  // namespace elrom::serve

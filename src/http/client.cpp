@@ -1,0 +1,168 @@
+#include "elrom/http/client.hpp"
+
+#include <limits>
+
+#include "elrom/base/error.hpp"
+#include "stream.hpp"
+
+namespace elrom::http {
+namespace {
+
+struct Url {
+  bool secure = false;
+  std::string host, port;
+};
+
+Url parse_url(const std::string& text) {
+  Url url{.secure = text.starts_with("https://")};
+  if (!url.secure && !text.starts_with("http://"))
+    throw UsageError(
+        Problem{.what = "no address of a server", .found = "'" + text + "'", .expected = "http://host:port"});
+  auto rest = text.substr(url.secure ? 8 : 7);
+  rest = rest.substr(0, rest.find('/'));
+  const auto colon = rest.rfind(':');
+  const bool bracketed = rest.starts_with('[');
+  const bool has_port = colon != std::string::npos && (!bracketed || colon > rest.find(']'));
+  url.host = rest.substr(0, has_port ? colon : std::string::npos);
+  if (bracketed) url.host = url.host.substr(1, url.host.size() - 2);
+  url.port = has_port ? rest.substr(colon + 1) : (url.secure ? "443" : "80");
+  if (url.host.empty() || url.port.empty())
+    throw UsageError(
+        Problem{.what = "no address of a server", .found = "'" + text + "'", .expected = "http://host:port"});
+  return url;
+}
+
+}  // namespace
+
+struct Client::Impl {
+  Url url;
+  ClientOptions options;
+  asio::io_context io{1};
+  std::unique_ptr<asio::ssl::context> tls;
+  std::unique_ptr<PlainStream> plain;
+  std::unique_ptr<SecureStream> secure;
+  beast::flat_buffer buffer;
+
+  void disconnect() {
+    plain.reset();
+    secure.reset();
+    buffer.clear();
+  }
+
+  [[noreturn]] void fail(const char* what, const beast::error_code& fault) {
+    disconnect();
+    throw SystemError(Problem{.what = what, .where = url.host + ":" + url.port, .found = fault.message()});
+  }
+
+  [[nodiscard]] PlainStream& tcp() { return secure ? beast::get_lowest_layer(*secure) : *plain; }
+
+  /// Runs what was begun to its end.
+  void run(const char* what, const beast::error_code& fault) {
+    io.restart();
+    io.run();
+    if (fault) fail(what, fault);
+  }
+
+  template <class Work>
+  void with_stream(const Work& work) {
+    if (secure)
+      work(*secure);
+    else
+      work(*plain);
+  }
+
+  void connect() {
+    beast::error_code fault;
+    asio::ip::tcp::resolver resolver(io);
+    const auto places = resolver.resolve(url.host, url.port, fault);
+    if (fault) fail("cannot find the server", fault);
+    if (url.secure) {
+      make_tls();
+      secure = std::make_unique<SecureStream>(io, *tls);
+    } else {
+      plain = std::make_unique<PlainStream>(io);
+    }
+    tcp().expires_after(milliseconds(options.timeout_seconds));
+    tcp().async_connect(places, [&](beast::error_code got, const auto&) { fault = got; });
+    run("cannot reach the server", fault);
+    tcp().socket().set_option(asio::ip::tcp::no_delay(true), fault);
+    if (!secure) return;
+    SSL_set_tlsext_host_name(secure->native_handle(), url.host.c_str());
+    secure->async_handshake(asio::ssl::stream_base::client, [&](beast::error_code got) { fault = got; });
+    run("no trust in the server's certificate", fault);
+  }
+
+  void make_tls() {
+    tls = std::make_unique<asio::ssl::context>(asio::ssl::context::tls_client);
+    beast::error_code fault;
+    if (options.authority.empty())
+      tls->set_default_verify_paths(fault);
+    else
+      tls->load_verify_file(options.authority.string(), fault);
+    if (fault) fail("cannot use the certificates of authorities", fault);
+    tls->set_verify_mode(asio::ssl::verify_peer);
+    tls->set_verify_callback(asio::ssl::host_name_verification(url.host));
+  }
+
+  /// Whether the server closed the connection since the last answer.
+  [[nodiscard]] bool is_stale() {
+    auto& socket = tcp().socket();
+    beast::error_code fault;
+    socket.non_blocking(true, fault);
+    char byte = 0;
+    socket.receive(asio::buffer(&byte, 1), asio::socket_base::message_peek, fault);
+    return fault != asio::error::would_block;
+  }
+
+  Response send(const Request& request) {
+    if ((plain || secure) && is_stale()) disconnect();
+    if (!plain && !secure) connect();
+    write(request);
+    return read(request.method == "HEAD");
+  }
+
+  void write(const Request& request) {
+    beast::http::request<beast::http::string_body> message;
+    message.method_string(request.method);
+    message.target(request.target);
+    message.version(11);
+    message.set(beast::http::field::host, url.host);
+    for (const auto& [name, value] : request.headers) message.set(name, value);
+    message.body() = request.body;
+    message.prepare_payload();
+    beast::error_code fault;
+    tcp().expires_after(milliseconds(options.timeout_seconds));
+    with_stream([&](auto& stream) {
+      beast::http::async_write(stream, message, [&](beast::error_code got, std::size_t) { fault = got; });
+    });
+    run("the request could not be sent", fault);
+  }
+
+  Response read(bool head_only) {
+    beast::http::response_parser<beast::http::string_body> parser;
+    parser.body_limit(options.answer_bytes);
+    parser.skip(head_only);
+    beast::error_code fault;
+    with_stream([&](auto& stream) {
+      beast::http::async_read(stream, buffer, parser,
+                              [&](beast::error_code got, std::size_t) { fault = got; });
+    });
+    run("no whole answer came", fault);
+    auto& message = parser.get();
+    Response response{.status = static_cast<int>(message.result_int()), .body = std::move(message.body())};
+    for (const auto& field : message)
+      response.headers.emplace_back(std::string(field.name_string()), std::string(field.value()));
+    if (!parser.keep_alive()) disconnect();
+    return response;
+  }
+};
+
+Client::Client(const std::string& url, ClientOptions options) : impl_(std::make_unique<Impl>()) {
+  impl_->url = parse_url(url);
+  impl_->options = std::move(options);
+}
+Client::~Client() = default;
+Client::Client(Client&&) noexcept = default;
+Response Client::send(const Request& request) { return impl_->send(request); }
+
+}  // namespace elrom::http

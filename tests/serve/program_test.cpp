@@ -1,0 +1,160 @@
+// elrom-serve as a machine meets it: started, asked, killed, stopped.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <future>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "elrom/base/digest.hpp"
+#include "elrom/base/error.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/http/client.hpp"
+#include "support/outcome.hpp"
+#include "support/raw_connection.hpp"
+#include "support/sample_bundle.hpp"
+#include "support/serving.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace elrom::serve {
+namespace {
+
+using Json = nlohmann::json;
+using test::outcome_of;
+using test::Serving;
+using ::testing::HasSubstr;
+
+const std::string program = ELROM_BIN_DIR "/elrom-serve";
+
+struct Started {
+  test::TemporaryFolder folder;
+  std::string data = (folder / "data").string();
+  std::string token = base::trim(outcome_of(program + " --data " + data + " --make-token me=admin").text);
+  std::unique_ptr<Serving> serving;
+
+  Started() {
+    test::sample_bundle({}).write(folder / "model.elrom");
+    serving = std::make_unique<Serving>(
+        program,
+        std::vector<std::string>{"--data", data, "--model", (folder / "model.elrom").string(), "--quiet"});
+  }
+  http::Response call(const std::string& method, const std::string& target, const std::string& body = "",
+                      const std::string& key = "k", const std::string& type = "application/json") const {
+    http::Client client(serving->url());
+    return client.send(
+        {.method = method,
+         .target = target,
+         .headers = {{"Authorization", "Bearer " + token},
+                     {"Content-Type", type},
+                     {"Accept", target == "/predictions" ? "application/x-hdf5" : "application/json"},
+                     {"Idempotency-Key", key}},
+         .body = body});
+  }
+  [[nodiscard]] static std::string inputs() {
+    Json inputs;
+    for (std::size_t i = 0; i < 4; ++i)
+      inputs["flow_" + std::to_string(i) + " [kg/s]"] = test::sample_case()[i];
+    return inputs.dump();
+  }
+};
+
+TEST(ElromServe, KeepsWhatItAcknowledgedWhenItIsKilled) {
+  Started started;
+  const auto body = R"({"name": "a", "inputs": )" + Started::inputs() + "}";
+  const auto made = started.call("POST", "/scenarios", body);
+
+  started.serving->end(SIGKILL);
+  started.serving->begin();
+  const auto again = started.call("POST", "/scenarios", body);
+
+  EXPECT_EQ(made.status, 201);
+  EXPECT_EQ(again.body, made.body);
+  EXPECT_EQ(*again.header("Idempotent-Replayed"), "true");
+}
+
+TEST(ElromServe, StopsWithoutLosingTheRequestInWork) {
+  Started started;
+  const std::string head =
+      "POST /scenarios HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nIdempotency-Key: k\r\n"
+      "Authorization: Bearer " +
+      started.token + "\r\nContent-Length: ";
+  const auto body = R"({"name": "a", "inputs": )" + Started::inputs() + "}";
+  const auto port = static_cast<unsigned short>(
+      std::stoi(started.serving->url().substr(started.serving->url().rfind(':') + 1)));
+  test::RawConnection connection(port);
+  connection.send(head + std::to_string(body.size()) + "\r\n\r\n" + body.substr(0, 10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+
+  auto ended = std::async(std::launch::async, [&] { return started.serving->end(SIGTERM); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  connection.send(body.substr(10));
+
+  EXPECT_THAT(connection.read_all(5), HasSubstr("HTTP/1.1 201 Created"));
+  EXPECT_EQ(ended.get(), 0);
+}
+
+TEST(ElromServe, LooksAtUploadsInAProcessOfItsOwn) {
+  Started started;
+  const auto file = started.call("POST", "/predictions", R"({"inputs": )" + Started::inputs() + "}").body;
+  const auto digest = base::sha256(std::as_bytes(std::span(file)));
+  auto broken = file;
+  for (std::size_t i = 600; i < broken.size(); i += 97) broken[i] = static_cast<char>(broken[i] ^ 0x55);
+
+  const auto kept = started.call("PUT", "/fields/" + digest, file, "k", "application/x-hdf5");
+  const auto refused = started.call("PUT", "/fields/" + base::sha256(std::as_bytes(std::span(broken))),
+                                    broken, "k", "application/x-hdf5");
+
+  EXPECT_EQ(kept.status, 201) << kept.body;
+  EXPECT_EQ(started.call("GET", "/fields/" + digest).body, file);
+  EXPECT_EQ(refused.status, 422) << refused.body;
+  EXPECT_EQ(started.call("GET", "/healthz").status, 200);
+}
+
+TEST(ElromServe, TakesUpANewModelByItself) {
+  Started started;
+  const auto before = started.call("GET", "/model").body;
+
+  test::sample_bundle({}, 2).write(started.folder / "model.elrom");
+  auto after = before;
+  for (int i = 0; i < 50 && after == before; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    after = started.call("GET", "/model").body;
+  }
+
+  EXPECT_NE(after, before);
+}
+
+TEST(ElromServe, ABrokenNewModelDoesNotReplaceTheOldOne) {
+  Started started;
+  const auto before = started.call("GET", "/model").body;
+
+  test::write_bytes(started.folder / "next", "no bundle");
+  std::filesystem::rename(started.folder / "next", started.folder / "model.elrom");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+
+  EXPECT_EQ(started.call("GET", "/model").body, before);
+}
+
+TEST(ElromServe, WrongCommandLinesAreOneLine) {
+  const test::TemporaryFolder folder;
+  const auto data = " --data " + (folder / "data").string();
+  const auto fails = [&](const std::string& arguments, int status, const std::string& words) {
+    const auto ended = outcome_of(program + arguments + " 2>&1");
+    EXPECT_EQ(ended.status, status) << ended.text;
+    EXPECT_THAT(ended.text, HasSubstr(words));
+    EXPECT_EQ(std::ranges::count(ended.text, '\n'), 1) << ended.text;
+  };
+
+  fails("", 2, "--data is missing");
+  fails(data + " --port 70000", 2, "--port");
+  fails(data + " --database mysql://x", 2, "unknown database");
+  fails(data + " --make-token x", 2, "NAME=ROLE");
+  fails(data + " --make-token x=king", 2, "unknown role");
+  fails(data + " --anonymous king", 2, "unknown role");
+  fails(data + " --port 0 --address nowhere", 3, "no address to listen at");
+  fails(data + " --port 0 --certificate /no.pem --key /no.key", 3, "cannot use the certificate");
+  fails(" --judge-fields /nothing.hdf", 3, "/nothing.hdf");
+}
+
+}  // namespace
+}  // namespace elrom::serve

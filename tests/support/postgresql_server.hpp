@@ -1,0 +1,106 @@
+#pragma once
+// A PostgreSQL server of a test's own, in a temporary folder, from Debian's package; it listens on a socket
+// there and nowhere else. Where the package is missing, available() says no.
+
+#include <pwd.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/temporary_folder.hpp"
+
+namespace elrom::test {
+
+class PostgresqlServer {
+ public:
+  PostgresqlServer() : folder_("/tmp") {
+    if (const auto* user = owner()) {
+      if (::chown(folder_.path().c_str(), user->pw_uid, user->pw_gid) != 0)
+        throw std::runtime_error("cannot give the folder away");
+    }
+    // Nothing is fetched from a disk that lost power here, so nothing is waited for.
+    wait_for(begin({program("initdb"), "-D", data(), "-U", "elrom", "-A", "trust", "-E", "UTF8", "--no-sync",
+                    "--no-instructions", "--locale=C"}));
+    start();
+  }
+  ~PostgresqlServer() { stop(SIGQUIT); }
+  PostgresqlServer(const PostgresqlServer&) = delete;
+  PostgresqlServer& operator=(const PostgresqlServer&) = delete;
+
+  [[nodiscard]] static bool available() {
+    return !binaries().empty() && (::getuid() != 0 || owner() != nullptr);
+  }
+  [[nodiscard]] std::string url() const {
+    return "postgresql://elrom@/postgres?host=" + folder_.path().string();
+  }
+  void start() {
+    process_ = begin({program("postgres"), "-D", data(), "-k", folder_.path().string(), "-c",
+                      "listen_addresses=", "-c", "fsync=off", "-c", "max_connections=100"});
+    const auto socket = folder_ / ".s.PGSQL.5432";
+    for (int i = 0; i < 200; ++i) {
+      if (std::filesystem::exists(socket) &&
+          wait_for(begin({program("pg_isready"), "-q", "-h", folder_.path().string()})) == 0)
+        return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    throw std::runtime_error("the PostgreSQL server does not start");
+  }
+  /// SIGKILL: as a crash would.
+  void stop(int signal) {
+    if (process_ <= 0) return;
+    ::kill(process_, signal);
+    ::waitpid(process_, nullptr, 0);
+    process_ = -1;
+    std::filesystem::remove(folder_ / ".s.PGSQL.5432");
+  }
+
+ private:
+  /// Who may run it: the server refuses to be root's.
+  [[nodiscard]] static const passwd* owner() { return ::getuid() == 0 ? ::getpwnam("postgres") : nullptr; }
+  [[nodiscard]] static std::filesystem::path binaries() {
+    const std::filesystem::path all = "/usr/lib/postgresql";
+    std::filesystem::path newest;
+    std::error_code none;
+    for (const auto& version : std::filesystem::directory_iterator(all, none))
+      if (std::filesystem::exists(version.path() / "bin/initdb") && version.path() > newest)
+        newest = version.path();
+    return newest.empty() ? newest : newest / "bin";
+  }
+  [[nodiscard]] static std::string program(const char* name) { return (binaries() / name).string(); }
+  [[nodiscard]] std::string data() const { return (folder_ / "data").string(); }
+
+  [[nodiscard]] pid_t begin(const std::vector<std::string>& command) const {
+    const auto* user = owner();
+    const auto log = (folder_ / "log.txt").string();
+    std::fflush(nullptr);  // or the child writes what is ours once more
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    if (user != nullptr && (::setgid(user->pw_gid) != 0 || ::setuid(user->pw_uid) != 0)) ::_exit(126);
+    std::vector<char*> arguments;
+    for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    if (std::freopen(log.c_str(), "a", stdout) == nullptr || ::dup2(1, 2) < 0 || ::chdir("/tmp") != 0)
+      ::_exit(125);
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  static int wait_for(pid_t process) {
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    return status;
+  }
+
+  TemporaryFolder folder_;
+  pid_t process_ = -1;
+};
+
+}  // namespace elrom::test
