@@ -11,9 +11,6 @@
 namespace elrom::scene {
 namespace {
 
-constexpr std::size_t block_size = 1024;
-constexpr double least_voidage = 0.3;
-
 class CoupledGas final : public Effect {
  public:
   CoupledGas(DragLaw law, GasFlow& flow, int n_threads)

@@ -10,9 +10,6 @@
 namespace elrom::scene {
 namespace {
 
-constexpr std::size_t block_size = 1024;
-constexpr double least_voidage = 0.3;
-
 class Gravity final : public Effect {
  public:
   explicit Gravity(const Vec& g) : Effect("gravity", Phase::force, 0, 1e-9), g_(g) {}

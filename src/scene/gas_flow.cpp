@@ -13,7 +13,6 @@ constexpr double tolerance = 1e-9;  // of the pressure's equation
 constexpr double courant = 4;       // cells that the gas crosses in a step at most, for accuracy
 constexpr int most_sweeps = 30;     // of the velocities' equation,
 constexpr double enough = 1e-7;     // or until they change by so little
-constexpr double least_voidage = 0.3;
 constexpr std::int32_t none = CellGrid::none;
 
 std::array<double, 3> array_of(const Vec& v) { return {v.x, v.y, v.z}; }

@@ -13,7 +13,6 @@
 namespace elrom::scene {
 namespace {
 
-constexpr std::size_t block_size = 1024;  // spheres a thread takes at a time
 using Cell = std::array<std::int64_t, 3>;
 using Pairs = std::vector<std::array<std::int32_t, 2>>;
 

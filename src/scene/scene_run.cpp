@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/io/csv.hpp"
 #include "elrom/scene/neighbours.hpp"
@@ -15,10 +15,6 @@ namespace elrom::scene {
 namespace {
 
 using std::filesystem::path;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string joined(const std::vector<double>& values) {
   std::string text;
@@ -212,7 +208,7 @@ SceneRun run(Simulation& simulation, const path& folder, Log& log, const std::st
   }
   const auto every = settings.steps_in(settings.output_every),
              keep_every = settings.steps_in(settings.checkpoint_every);
-  const double begin = seconds_now();
+  const base::Stopwatch watch;
   while (!simulation.done()) {
     if (stop.stop_requested())
       throw Interrupted(Problem{.what = "stopped",
@@ -227,7 +223,7 @@ SceneRun run(Simulation& simulation, const path& folder, Log& log, const std::st
     }
     log.progress({.task = settings.name, .done = step, .total = settings.n_steps(), .unit = "steps"});
   }
-  done.seconds = seconds_now() - begin;
+  done.seconds = watch.seconds();
   done.files = outputs.write();
   return done;
 }

@@ -13,7 +13,7 @@
 namespace elrom::scene {
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double tiny = std::numeric_limits<double>::min();
 constexpr double longest = 1e6;  // m, and s
 
@@ -89,7 +89,7 @@ io::SettingsTable<GroupSettings> group_table() {
 std::string group_fault(const GroupSettings& group) {
   if (group.number.has_value() == group.mass.has_value()) return "either number or mass";
   if (group.distribution != "value" && group.deviation == 0) return "a deviation above 0";
-  return group.smallest.value_or(0) <= group.diameter && group.diameter <= group.largest.value_or(endless)
+  return group.smallest.value_or(0) <= group.diameter && group.diameter <= group.largest.value_or(unbounded)
              ? ""
              : "a diameter between smallest and largest";
 }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
+#include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/particle/exact_model.hpp"
 
@@ -15,10 +15,6 @@ namespace elrom::scene {
 namespace {
 
 constexpr double usual_overlap = 0.01;  // of the smallest sphere, at twice the fastest speed of the beginning
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 Domain domain_of(const SceneSettings& s) {
   std::vector<Body> bodies;
@@ -249,9 +245,9 @@ std::int64_t Simulation::due() const {
 }
 
 void Simulation::apply(Timed& timed, double dt) {
-  const double begin = seconds_now();
+  const base::Stopwatch watch;
   timed.effect->apply(state_, dt);
-  timed.seconds += seconds_now() - begin;
+  timed.seconds += watch.seconds();
 }
 
 // All forces' acceleration over a time.

@@ -15,8 +15,7 @@
 namespace elrom::scene {
 namespace {
 
-constexpr std::size_t block_size = 1024;
-constexpr double look = 1.5e-9;                 // s, of a pair of the list in a step
+constexpr double soft_pair_seconds = 1.5e-9;    // of the list, in a step
 constexpr double usual_steps_per_contact = 20;  // of StepTimes::step()
 
 // Place and radius of a sphere side by side: what the search for contacts reads, in one piece.
@@ -158,7 +157,7 @@ class SoftSpheres final : public Mover {
     if (domain_.images().any())
       for (std::size_t i = 0; i < p.size(); ++i) set(p.place, i, domain_.wrapped(get(p.place, i)));
     pack(p);
-    skin_ = best_skin(p, fastest_ * h, look);
+    skin_ = best_skin(p, fastest_ * h, soft_pair_seconds);
     neighbours_.build(p, domain_, skin_, settings_.n_threads);
     near_wall_.assign(p.size(), 0);
     for (const auto i : neighbours_.near_wall()) near_wall_[static_cast<std::size_t>(i)] = 1;

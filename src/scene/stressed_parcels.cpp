@@ -135,8 +135,8 @@ class StressedParcels final : public Mover {
     return solids_.fraction[c] - kept - dt * out / grid_.space(c);
   }
 
-  // Where spheres seldom meet the balance has no bound; but none is faster than what mean velocities differ by
-  // from cell to cell.
+  // Where spheres seldom meet the balance has no bound; but none is faster than what mean velocities differ
+  // by from cell to cell.
   [[nodiscard]] double temperature(std::size_t c) const {
     const auto shear = strain(c);
     const double h = std::cbrt(grid_.volume());

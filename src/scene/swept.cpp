@@ -18,10 +18,9 @@ namespace elrom::scene {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
-constexpr std::size_t block_size = 2048;
-constexpr double look = 1e-9;             // s, of a pair of the list in a step
-constexpr double reserve = 1.2;           // a sphere may become this much faster before the step is cut
-constexpr std::int64_t most_events = 20;  // a sphere, in the time it takes to cross the skin; more: jammed
+constexpr double swept_pair_seconds = 1e-9;  // of the list, in a step
+constexpr double reserve = 1.2;              // a sphere may become this much faster before the step is cut
+constexpr std::int64_t most_events = 20;     // a sphere, in the time it takes to cross the skin; more: jammed
 constexpr std::int32_t no_sphere = -1;
 
 struct Event {
@@ -84,7 +83,7 @@ class Swept final : public Mover {
     auto& p = state.particles;
     if (domain_.images().any())
       for (std::size_t i = 0; i < p.size(); ++i) set(p.place, i, domain_.wrapped(get(p.place, i)));
-    skin_ = best_skin(p, travel, look);
+    skin_ = best_skin(p, travel, swept_pair_seconds);
     neighbours_.build(p, domain_, skin_, settings_.n_threads);
     neighbours_.with_both();
     near_wall_.assign(p.size(), 0);

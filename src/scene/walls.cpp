@@ -7,7 +7,6 @@
 namespace elrom::scene {
 namespace {
 
-constexpr std::size_t block_size = 4096;
 constexpr int most_hits = 1000;  // of a sphere in a step: what is squeezed into a corner stays there
 
 struct Count {

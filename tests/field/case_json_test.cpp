@@ -10,23 +10,23 @@
 namespace elrom::field {
 namespace {
 
-const InputSchema schema({{.name = "primary_air", .unit = "kg/s", .display_unit = "t/h"}});
+const InputSchema one_input({{.name = "primary_air", .unit = "kg/s", .display_unit = "t/h"}});
 
 TEST(CaseJson, ReadsOneCaseByTheRulesOfCaseFiles) {
-  const auto one =
-      parse_case(R"({"case": "a", "load [%]": 64, "inputs": {"primary_air [t/h]": 360}})", "request", schema);
+  const auto one = parse_case(R"({"case": "a", "load [%]": 64, "inputs": {"primary_air [t/h]": 360}})",
+                              "request", one_input);
 
   EXPECT_EQ(one.name, "a");
   EXPECT_DOUBLE_EQ(one.load, 0.64);
   EXPECT_DOUBLE_EQ(one.values.at(0), 100);
-  EXPECT_TRUE(std::isnan(parse_case(R"({"case": "a", "inputs": {"primary_air": 1}})", "x", schema).load));
+  EXPECT_TRUE(std::isnan(parse_case(R"({"case": "a", "inputs": {"primary_air": 1}})", "x", one_input).load));
 }
 
 TEST(CaseJson, SaysWhereTheMistakeIs) {
-  EXPECT_ERROR(InputError, "not JSON", parse_case("{", "request", schema));
+  EXPECT_ERROR(InputError, "not JSON", parse_case("{", "request", one_input));
   EXPECT_ERROR(InputError, "missing boundary condition 'primary_air [t/h]' in request, case 'a'",
-               parse_case(R"({"case": "a", "inputs": {}})", "request", schema));
-  EXPECT_ERROR(InputError, "missing text 'case'", parse_case(R"({"inputs": {}})", "request", schema));
+               parse_case(R"({"case": "a", "inputs": {}})", "request", one_input));
+  EXPECT_ERROR(InputError, "missing text 'case'", parse_case(R"({"inputs": {}})", "request", one_input));
 }
 
 TEST(CaseJson, ACaseDeclaresItsOwnSchema) {

@@ -38,7 +38,8 @@ TEST(Drag, IsStokesAtRest) {
 
 TEST(Drag, RefusesASphereThatRises) { EXPECT_THROW((void)terminal_speed(1e-3, 1, {}), UsageError); }
 
-// Ergun's own equation, in the superficial speed: 150 mu eps_s^2 U / (eps^3 d^2) + 1.75 rho eps_s U^2 / (eps^3 d).
+// Ergun's own equation, in the superficial speed: 150 mu eps_s^2 U / (eps^3 d^2) + 1.75 rho eps_s U^2 /
+// (eps^3 d).
 TEST(Drag, OfAPackedBedDropsThePressureByErgunsEquation) {
   const Gas gas;
   const double d = 475e-6, eps = 0.4, volume = std::numbers::pi / 6 * d * d * d;
@@ -73,7 +74,8 @@ TEST(Drag, OfASphereAloneIsThatOfSchillerAndNaumann) {
   EXPECT_NEAR(drag_rate(DragLaw::syamlal, 1e-3, 0, 1, {}) / drag_rate(1e-3, 0, {}), 4.8 * 4.8 / 24, 1e-12);
 }
 
-// Syamlal's law comes from Richardson & Zaki's terminal speeds of swarms: v_r = eps^4.14 where inertia is none.
+// Syamlal's law comes from Richardson & Zaki's terminal speeds of swarms: v_r = eps^4.14 where inertia is
+// none.
 TEST(Drag, OfASwarmFollowsItsTerminalSpeed) {
   const double crowd = drag_rate(DragLaw::syamlal, 1e-5, 1e-9, 0.7, {}),
                alone = drag_rate(DragLaw::syamlal, 1e-5, 1e-9, 1, {});

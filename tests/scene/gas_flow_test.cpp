@@ -51,7 +51,8 @@ TEST(SceneGasFlow, IsGhiasInACavity) {
   EXPECT_LT(flow.divergence(), 1e-8);
 }
 
-// A pipe full of solids that do not move: the pressure falls by Ergun's equation, and the flow is what came in.
+// A pipe full of solids that do not move: the pressure falls by Ergun's equation, and the flow is what came
+// in.
 TEST(SceneGasFlow, DropsThePressureOfAPackedBedByErgunsEquation) {
   const Domain domain({test::box({}, {0.01, 0.01, 0.1})}, {"box.z_high"});
   const particle::Gas gas;

@@ -14,6 +14,9 @@
 
 namespace elrom::scene {
 
+/// What is left to the gas in a cell at least, however many parcels claim it.
+inline constexpr double least_voidage = 0.3;
+
 /// Of a place: cells, or faces along an axis, with their weights.
 struct Shares {
   std::array<std::int32_t, 8> of;

@@ -1,16 +1,16 @@
 #pragma once
-// A gas that flows through a domain, between spheres and answering them: volume-averaged, incompressible, on a
-// staggered grid (cell_grid.hpp).
+// A gas that flows through a domain, between spheres and answering them: volume-averaged, incompressible,
+// on a staggered grid (cell_grid.hpp).
 //
 //   div(eps u + S) = 0            S: flux of the solids, so that gas and solids fill space
 //   eps rho (du/dt + u . grad u) = -eps grad p + eps mu lap u + K (u_s - u)
 //
 // p is without the gas's own weight; spheres' buoyancy is an effect of its own. The drag is implicit, in the
-// pressure's equation too, so that no K makes it unstable; convection and viscosity are implicit too, in steps
-// in which the gas crosses four cells at most. Convection by central differences, with as much diffusion as keeps them monotone (Spalding's
-// hybrid scheme): second order where |u| h < 2 nu, first where it is faster. Walls: no slip; cells are in or
-// out, so walls that lean are stairs. Inlets: a velocity, scaled so that the side's flow is exact. Outlets:
-// pressure 0.
+// pressure's equation too, so that no K makes it unstable; convection and viscosity are implicit too, in
+// steps in which the gas crosses four cells at most. Convection by central differences, with as much
+// diffusion as keeps them monotone (Spalding's hybrid scheme): second order where |u| h < 2 nu, first where
+// it is faster. Walls: no slip; cells are in or out, so walls that lean are stairs. Inlets: a velocity,
+// scaled so that the side's flow is exact. Outlets: pressure 0.
 //
 // Thread rule: one thread.
 

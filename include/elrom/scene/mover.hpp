@@ -5,11 +5,10 @@
 //   none              straight paths; spheres pass through each other
 //   dem               soft spheres: contact forces, with history, in steps that the contact law asks for
 //   helscm            swept: collisions at their exact times on straight paths, by a collision model
-//   hel               parcels that feel each other as a continuum: stress of kinetic theory and friction, cells
-//                     that are full let nobody in (granular_stress.hpp)
+//   hel               parcels that feel each other as a continuum: stress of kinetic theory and friction;
+//                     cells that are full let nobody in (stressed_parcels.cpp)
 //   helscm_document   the source's: at the end of the step, spheres that overlap collide once with the mean
-// of
-//                     their partners. Its count depends on the step; kept to be compared with.
+//                     of their partners. Its count depends on the step; kept to be compared with.
 //
 // In all of them the walls reflect at the exact time, except in dem with walls that are contacts.
 //

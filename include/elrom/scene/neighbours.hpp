@@ -3,8 +3,8 @@
 // for as long as no two spheres have come nearer to each other than it by more than the skin.
 //
 // Spheres are sorted into levels by size (a factor of two each) with cells of their own size, so that a few
-// large spheres among many small ones cost no more than their share. Each looks at its own cell and at half of
-// those around. A list that is made again allocates nothing, where it is no longer than before.
+// large spheres among many small ones cost no more than their share. Each looks at its own cell and at half
+// of those around. A list that is made again allocates nothing, where it is no longer than before.
 //
 // Thread rule: build() uses threads of its own; the list is the same for any number of them.
 
@@ -56,7 +56,7 @@ class NeighbourList {
 
 /// The skin with which a list costs least over its life, m: a wide one lasts longer and holds more pairs.
 /// From the mean diameter and the spheres that one has around it, so that dilute scenes get wide skins.
-/// @param travel of the fastest sphere in a step, m @param look seconds that a pair of the list costs in a step
+/// @param travel of the fastest sphere in a step, m. @param look seconds a step that a pair of the list costs
 [[nodiscard]] double best_skin(const Particles& particles, double travel, double look);
 
 /// Pairs that overlap by more than `share` of the smaller diameter, and the first of them.

@@ -76,6 +76,9 @@ struct Particles {
   std::vector<double> contact;  ///< contact_diameter() of parcels
 };
 
+/// Spheres that a thread takes at a time.
+inline constexpr std::size_t block_size = 1024;
+
 /// Sums over all spheres.
 [[nodiscard]] double mass_of(const Particles& particles);
 [[nodiscard]] Vec momentum_of(const Particles& particles);           ///< kg m/s

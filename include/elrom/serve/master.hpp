@@ -35,8 +35,8 @@ struct Claimed {
   std::string inputs;  ///< document: {"primary_air [kg/s]": 161.1, ...}, SI
 };
 
-/// What a model made of it. A model that cannot throws: InputError and NumericalError end the run as failed, what
-/// else it throws has it tried again.
+/// What a model made of it. A model that cannot throws: InputError and NumericalError end the run as
+/// failed, what else it throws has it tried again.
 struct Finished {
   std::string version, verdict, reason;
   std::string document;  ///< JSON
@@ -66,7 +66,8 @@ class Master {
   http::Client client_;
 };
 
-/// The work of elrom-predict: all fields with intervals by the bundle that is there now, and the guard's verdict.
+/// The work of elrom-predict: all fields with intervals by the bundle that is there now, and the guard's
+/// verdict.
 /// @param folder for files on their way
 [[nodiscard]] Master::Work prediction_work(ResidentModel& model, const std::filesystem::path& folder);
 
