@@ -29,13 +29,14 @@ TEST(CaseJson, SaysWhereTheMistakeIs) {
   EXPECT_ERROR(InputError, "missing text 'case'", parse_case(R"({"inputs": {}})", "request", one_input));
 }
 
+// JSON has no order of names: theirs is that of the alphabet.
 TEST(CaseJson, ACaseDeclaresItsOwnSchema) {
   const auto declared =
       declared_schema(R"({"case": "a", "inputs": {"steam [t/h]": 1, "share": 0.5}})", "request");
 
   ASSERT_EQ(declared.size(), 2U);
-  EXPECT_EQ(declared[0], (InputInfo{.name = "steam", .unit = "kg/s", .display_unit = "t/h"}));
-  EXPECT_EQ(declared[1], (InputInfo{.name = "share", .unit = "1", .display_unit = "1"}));
+  EXPECT_EQ(declared[0], (InputInfo{.name = "share", .unit = "1", .display_unit = "1"}));
+  EXPECT_EQ(declared[1], (InputInfo{.name = "steam", .unit = "kg/s", .display_unit = "t/h"}));
   EXPECT_ERROR(
       InputError, "'steam' appears twice",
       declared_schema(R"({"case": "a", "inputs": {"steam [t/h]": 1, "steam [kg/s]": 1}})", "request"));
