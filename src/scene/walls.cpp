@@ -43,7 +43,8 @@ void fly(State& state, const Domain& domain, const WallLaw& law, double dt, int 
   const std::size_t n_blocks = (p.size() + wall_block_size - 1) / wall_block_size;
   std::vector<Count> counts(n_blocks);
   base::parallel_for(n_blocks, n_threads, [&](std::size_t block, int) {
-    for (std::size_t i = block * wall_block_size; i < std::min(p.size(), (block + 1) * wall_block_size); ++i) {
+    for (std::size_t i = block * wall_block_size; i < std::min(p.size(), (block + 1) * wall_block_size);
+         ++i) {
       const auto path = follow(domain, law, get(p.place, i), get(p.velocity, i), 0.5 * p.diameter[i], dt);
       set(p.place, i, path.place);
       set(p.velocity, i, path.velocity);

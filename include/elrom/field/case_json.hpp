@@ -16,7 +16,7 @@ namespace elrom::field {
 [[nodiscard]] CaseInputs parse_case(const std::string& json, const std::string& where,
                                     const InputSchema& schema);
 
-/// The schema that such a case declares itself, by its inputs' names and units, in their order.
+/// The schema that such a case declares itself, by its inputs' names and units, in alphabetical order.
 /// @throws InputError for an unknown unit, a name that appears twice
 [[nodiscard]] InputSchema declared_schema(const std::string& json, const std::string& where);
 
