@@ -16,6 +16,7 @@ constexpr std::size_t most_groups = 16;
 
 nlohmann::json to_json(const SmootherKernel& kernel) {
   return {{"antisymmetric", kernel.antisymmetric},
+          {"covariance", math::name_of(kernel.covariance)},
           {"linear", kernel.linear},
           {"constant", kernel.constant},
           {"noise", kernel.noise}};
@@ -25,6 +26,8 @@ SmootherKernel kernel_of(const nlohmann::json& json, const std::string& where) {
   SmootherKernel kernel;
   try {
     kernel.antisymmetric = json.at("antisymmetric").get<bool>();
+    if (json.contains("covariance"))  // a bundle without it is of the time before there was a choice
+      kernel.covariance = math::covariance_of(json.at("covariance").get<std::string>());
     kernel.linear = json.at("linear").get<double>();
     kernel.constant = json.at("constant").get<double>();
     kernel.noise = json.at("noise").get<double>();
@@ -44,7 +47,7 @@ double SmootherKernel::operator()(const double* z, const double* z_other) const 
     dot += a * b;
     product += z[j] * z_other[j] * imbalance[j] * imbalance[j];
   }
-  const double near = math::covariance(math::Covariance::matern52, std::sqrt(squares));
+  const double near = math::covariance(covariance, std::sqrt(squares));
   return antisymmetric ? product * (linear + near) : near + linear * dot + constant;
 }
 

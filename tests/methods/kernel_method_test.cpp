@@ -8,6 +8,7 @@
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/peers.hpp"
 #include "elrom/model/pod_model.hpp"
+#include "elrom/model/smoother_coefficients.hpp"
 #include "leave_one_out.hpp"
 #include "shrinkage.hpp"
 #include "support/changed_members.hpp"
@@ -97,6 +98,26 @@ TEST(LeaveOneOut, SlopeEqualsDifferences) {
       (leave_one_out_error(up, 0.3, gram) - leave_one_out_error(down, 0.3, gram)) / (2 * h);
 
   EXPECT_NEAR(slope(1, 4) + slope(4, 1), difference, 1e-6 * std::abs(difference) + 1e-8);
+}
+
+TEST(LeaveOneOut, AStationaryKernelFindsTheInputThatMatters) {
+  base::Random random(base::Seed(5));
+  MatrixD x(40, 2);
+  Eigen::MatrixXd y(40, 1);
+  for (Eigen::Index i = 0; i < 40; ++i) {
+    x.row(i) << random.normal(), random.normal();
+    y(i, 0) = std::sin(2 * x(i, 0));
+  }
+  const std::vector<StationaryKernel> starts{{Eigen::VectorXd::Ones(1), 0.1}};
+  const Eigen::MatrixXd gram = y * y.transpose();
+
+  const auto one = fit_stationary_kernel(x, gram, math::Covariance::gaussian, true, starts);
+  const auto each = fit_stationary_kernel(x, gram, math::Covariance::gaussian, false, starts);
+
+  EXPECT_EQ(one.lengths[0], one.lengths[1]);
+  EXPECT_GT(each.lengths[1], 10 * each.lengths[0]);
+  EXPECT_LT(each.error, 0.1 * one.error);
+  EXPECT_LT(each.noise, 1e-4);
 }
 
 TEST(Shrinkage, KeepsSignalAndRemovesNoise) {
@@ -234,6 +255,51 @@ TEST(KernelMethod, AnEarlierModelOfOtherFeaturesIsNoStart) {
              other = make_kernel_method()->fit(data, math::all_rows(15), {});
 
   EXPECT_EQ(predict(*one, cases, inputs), predict(*other, cases, inputs));
+}
+
+/// Two inputs, the first from 0.05 to 1 and without a dimension; the field is smooth in its inverse.
+struct InverseWorld {
+  field::CaseSet cases;
+  field::FieldData data;
+  explicit InverseWorld(double noise = 0) {
+    cases.mesh.n_planes = 4;
+    cases.mesh.n_columns = 10;
+    cases.schema = field::InputSchema({{"number", "1", "1"}, {"angle", "1", "1"}});
+    cases.inputs.resize(60, 2);
+    base::Random random(base::Seed(4));
+    data = {&cases, {"pressure", "", "Pa"}, MatrixF(60, 40)};
+    for (Eigen::Index i = 0; i < 60; ++i) {
+      cases.names.push_back("case" + std::to_string(i));
+      cases.loads.push_back(static_cast<double>(i));
+      cases.inputs.row(i) << 1 / random.uniform(1, 20), random.uniform(-1, 1);
+      for (Eigen::Index c = 0; c < 40; ++c)
+        data.values(i, c) = static_cast<float>(
+            std::sin(0.3 / cases.inputs(i, 0) + 0.1 * c + cases.inputs(i, 1)) + noise * random.normal());
+    }
+  }
+};
+
+const model::SmootherCoefficients& smoother_of(const model::FieldModel& model) {
+  const auto& modes = dynamic_cast<const model::PodModel&>(model);
+  return dynamic_cast<const model::SmootherCoefficients&>(modes.coefficients());
+}
+
+TEST(KernelMethod, FindsTheFormOfAnInputInWhichTheFieldIsSmooth) {
+  const InverseWorld world;
+
+  const auto model = make_kernel_method()->fit(world.data, math::all_rows(60), {});
+
+  EXPECT_EQ(smoother_of(*model).features().features()[0].name, "number, inverse");
+  EXPECT_LT(test::unseen_error(*make_kernel_method(), world.data), 0.02);
+}
+
+TEST(KernelMethod, ASmoothFieldGetsASmoothCovariance) {
+  const InverseWorld world;
+
+  const auto model = make_kernel_method()->fit(world.data, math::all_rows(60), {});
+
+  EXPECT_EQ(smoother_of(*model).groups()[0].kernel.covariance, math::Covariance::gaussian);
+  EXPECT_LT(smoother_of(*model).groups()[0].kernel.noise, 1e-4);
 }
 
 TEST(KernelMethod, HardCasesStayFinite) {

@@ -99,8 +99,9 @@ TEST(Peers, OnASmoothFieldWithoutNoiseTheyChooseModesAndHardlyAnySmoothing) {
   const field::CaseSet cases = curve(40);
   const field::FieldData data = smooth_field(cases);
 
-  for (const char* name : {"pod_rbf", "pod_gp_per_mode"})
-    EXPECT_LT(test::unseen_error(*make_peer(name), data), 0.15) << name;
+  for (const char* name : {"pod_gp", "pod_gp_per_mode"})
+    EXPECT_LT(test::unseen_error(*make_peer(name), data), 0.03) << name;
+  EXPECT_LT(test::unseen_error(*make_peer("pod_rbf"), data), 0.13) << "which has no length scale";
 }
 
 TEST(Peers, OnPureNoiseTheyKeepToTheMean) {

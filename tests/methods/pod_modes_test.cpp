@@ -18,6 +18,12 @@ TEST(PodModes, KeepsTheFirstModesThatLeaveTheLeastError) {
   EXPECT_EQ(predictable_modes(Vector3d(1, 5, 2.5), energies), 1);
 }
 
+TEST(PodModes, LastModesThatTogetherGainNextToNothingAreNotKept) {
+  const VectorXd energies = (VectorXd(4) << 10, 1, 1e-3, 3e-4).finished();
+  EXPECT_EQ(predictable_modes(VectorXd((VectorXd(4) << 1, 0.5, 0, 0).finished()), energies), 2);
+  EXPECT_EQ(predictable_modes(VectorXd((VectorXd(4) << 1e-3, 0, 0, 0).finished()), energies), 4);
+}
+
 TEST(PodModes, OneModeStaysWhereNoneCanBePredicted) {
   const VectorXd energies = Vector3d(3, 2, 1);
   EXPECT_EQ(predictable_modes(Vector3d(4, 3, 2), energies), 1);

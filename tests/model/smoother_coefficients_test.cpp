@@ -35,10 +35,12 @@ Eigen::MatrixXd covariance(const SmootherKernel& kernel, const MatrixD& z) {
 }
 
 /// A smoother of these cases' coefficients, by the textbook; a symmetric one about their mean.
-SmootherCoefficients smoother(const MatrixD& z, const MatrixD& coefficients, bool antisymmetric) {
+SmootherCoefficients smoother(const MatrixD& z, const MatrixD& coefficients, bool antisymmetric,
+                              math::Covariance kind = math::Covariance::matern52) {
   MatrixD centred = coefficients;
   if (!antisymmetric) centred.rowwise() -= coefficients.colwise().mean().eval();
-  const auto own = kernel(antisymmetric);
+  auto own = kernel(antisymmetric);
+  own.covariance = kind;
   const math::Cholesky factor(covariance(own, z));
   std::vector<Feature> features(2);
   for (std::int32_t i = 0; i < 2; ++i) features[static_cast<std::size_t>(i)].terms = {{.form = {{i}, {1}}}};
@@ -54,6 +56,19 @@ Eigen::VectorXd predicted(const SmootherCoefficients& model, const Eigen::Vector
   Workspace workspace;
   model.predict({inputs.data(), 2}, {coefficients.data(), n_fitted}, {}, false, workspace);
   return coefficients;
+}
+
+TEST(SmootherCoefficients, ReadsBackItsCovariance) {
+  const MatrixD z = random_matrix(n_known, n_inputs, 1), coefficients = random_matrix(n_known, n_fitted, 2);
+  for (const auto covariance : {math::Covariance::matern52, math::Covariance::gaussian}) {
+    const auto model = smoother(z, coefficients, false, covariance);
+    io::TensorFile file;
+
+    model.save(file, "m");
+    const auto loaded = load_coefficient_model(file, "m");
+
+    EXPECT_EQ(dynamic_cast<const SmootherCoefficients&>(*loaded).groups()[0].kernel.covariance, covariance);
+  }
 }
 
 class WithoutACase : public ::testing::TestWithParam<bool> {};

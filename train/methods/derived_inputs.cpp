@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "elrom/math/statistics.hpp"
 
@@ -15,9 +16,10 @@ using model::Feature;
 using model::FeatureTerm;
 using model::LinearForm;
 
-/// The smallest and the mean value of a form over the training cases.
+/// The smallest, largest and mean value of a form over the training cases.
 struct Range {
-  double least = std::numeric_limits<double>::infinity(), mean = 0;
+  double least = std::numeric_limits<double>::infinity(), most = -least, mean = 0;
+  [[nodiscard]] bool wide() const { return least > 0 && most > 2 * least; }
 };
 
 /// The symmetric part of the inputs that mirrors exchange, as a sum over them.
@@ -32,8 +34,8 @@ struct Quantity {
 class Builder {
  public:
   Builder(const field::CaseSet& cases, std::span<const std::size_t> rows,
-          const std::vector<SymmetryClass>& classes)
-      : cases_(cases), rows_(rows), classes_(classes) {
+          const std::vector<SymmetryClass>& classes, std::span<const std::string> wanted)
+      : cases_(cases), rows_(rows), classes_(classes), wanted_(wanted) {
     for (const auto& orbit : input_orbits(cases)) add_quantity(orbit);
   }
 
@@ -41,7 +43,7 @@ class Builder {
     add_symmetric();
     for (std::size_t c = 1; c < classes_.size(); ++c) add_imbalances(c);
     return {model::FeatureMap(std::move(features_), static_cast<std::size_t>(cases_.inputs.cols())),
-            std::move(class_of_)};
+            std::move(class_of_), std::move(forms_)};
   }
 
  private:
@@ -55,6 +57,7 @@ class Builder {
     for (std::size_t row : rows_) {
       const double value = form.value(inputs_of(row));
       range.least = std::min(range.least, value);
+      range.most = std::max(range.most, value);
       range.mean += value / static_cast<double>(rows_.size());
     }
     return range;
@@ -118,6 +121,22 @@ class Builder {
     return feature;
   }
 
+  /// The usual form, which has the quantity's name, or another one that is wanted.
+  [[nodiscard]] Feature usual_or_wanted(const Quantity& q) {
+    Feature plain{q.name, {{FeatureTerm::Kind::value, 1, q.sum, {}, 0}}};
+    if (!(q.range.least > 0)) return plain;
+    Feature logarithm{q.name, {log_of(q.sum, q.range, 1)}};
+    (q.unit == "1" ? logarithm.name : plain.name) += q.unit == "1" ? ", log" : ", as it is";
+    Feature inverse{q.name + ", inverse",
+                    {{FeatureTerm::Kind::quotient, 1, {.offset = q.range.mean}, q.sum, 1e-3 * q.range.mean}}};
+    const Feature& usual = q.unit == "1" ? plain : logarithm;
+    if (!q.range.wide()) return usual;
+    forms_.push_back({plain.name, logarithm.name, inverse.name});
+    for (const Feature* feature : {&plain, &logarithm, &inverse})
+      if (std::ranges::find(wanted_, feature->name) != wanted_.end()) return *feature;
+    return usual;
+  }
+
   void add_symmetric() {
     std::vector<const Quantity*> inlets;
     LinearForm gas;
@@ -141,11 +160,7 @@ class Builder {
     }
     for (const Quantity& q : quantities_) {
       if (inlets.size() > 1 && std::find(inlets.begin(), inlets.end(), &q) != inlets.end()) continue;
-      const bool logarithmic = q.range.least > 0 && q.unit != "1";
-      add({q.name,
-           {logarithmic ? log_of(q.sum, q.range, 1)
-                        : FeatureTerm{FeatureTerm::Kind::value, 1, q.sum, {}, 0}}},
-          0);
+      add(usual_or_wanted(q), 0);
     }
   }
 
@@ -165,6 +180,8 @@ class Builder {
   const field::CaseSet& cases_;
   std::span<const std::size_t> rows_;
   const std::vector<SymmetryClass>& classes_;
+  std::span<const std::string> wanted_;
+  std::vector<std::vector<std::string>> forms_;
   std::vector<Quantity> quantities_;
   std::vector<Feature> features_;
   std::vector<std::size_t> class_of_;
@@ -173,8 +190,8 @@ class Builder {
 }  // namespace
 
 DerivedInputs derive_inputs(const field::CaseSet& cases, std::span<const std::size_t> rows,
-                            const std::vector<SymmetryClass>& classes) {
-  return Builder(cases, rows, classes).build();
+                            const std::vector<SymmetryClass>& classes, std::span<const std::string> wanted) {
+  return Builder(cases, rows, classes, wanted).build();
 }
 
 }  // namespace elrom::methods

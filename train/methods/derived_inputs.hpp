@@ -14,6 +14,9 @@ namespace elrom::methods {
 struct DerivedInputs {
   model::FeatureMap map;
   std::vector<std::size_t> class_of;  ///< index of the symmetry class of each feature
+  /// Names of the features that each quantity could be, which is positive and varies by more than a factor of
+  /// two: itself, its logarithm, its inverse. One of them is in the map.
+  std::vector<std::vector<std::string>> forms = {};
 };
 
 /// Symmetric features: where the schema has gas flows [kg/s], a temperature [K] and a diameter [m], the gas
@@ -21,7 +24,9 @@ struct DerivedInputs {
 /// of the gas, and logarithms of what is positive; otherwise the inputs themselves. Inputs that mirrors
 /// exchange enter by their sum. Antisymmetric features: the imbalance of exchanged inputs relative to their
 /// mean. Features that do not vary over the given cases are left out.
+/// @param wanted names among `forms`, which are taken instead of the usual ones
 [[nodiscard]] DerivedInputs derive_inputs(const field::CaseSet& cases, std::span<const std::size_t> rows,
-                                          const std::vector<SymmetryClass>& classes);
+                                          const std::vector<SymmetryClass>& classes,
+                                          std::span<const std::string> wanted = {});
 
 }  // namespace elrom::methods

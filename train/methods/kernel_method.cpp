@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "derived_inputs.hpp"
 #include "elrom/base/error.hpp"
@@ -89,6 +90,10 @@ struct Features {
     }
     return found;
   }
+  [[nodiscard]] bool has(const std::string& name) const {
+    return std::ranges::find(derived.map.features(), name, &model::Feature::name) !=
+           derived.map.features().end();
+  }
   [[nodiscard]] bool same_as(const model::FeatureMap& other) const {
     return std::ranges::equal(derived.map.features(), other.features(), {}, &model::Feature::name,
                               &model::Feature::name);
@@ -96,8 +101,8 @@ struct Features {
 };
 
 Features features_of(const field::CaseSet& cases, std::span<const std::size_t> rows,
-                     const std::vector<SymmetryClass>& classes) {
-  Features features{derive_inputs(cases, rows, classes), {}, {}};
+                     const std::vector<SymmetryClass>& classes, std::span<const std::string> wanted) {
+  Features features{derive_inputs(cases, rows, classes, wanted), {}, {}};
   MatrixD raw(static_cast<Index>(rows.size()), static_cast<Index>(features.derived.map.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto row = cases.inputs.row(static_cast<Index>(rows[i]));
@@ -122,16 +127,20 @@ struct FieldParts {
   MatrixF symmetric;  // departures of the symmetric class from its mean, (n_cases, n_cells)
   VectorXd mean;      // (n_cells)
   Features features;
+  std::optional<model::SmootherKernel> first;            // of the least leave-one-out error
   const model::SmootherCoefficients* earlier = nullptr;  // of the same features
 
   FieldParts(const field::FieldData& data, std::span<const std::size_t> cases, const FitContext& context)
       : classes(symmetry_classes(data.cases->mirrors.size())),
         symmetric(project(data, cases, classes.front(), context.n_threads)),
-        mean(math::row_mean(symmetric, math::all_rows(cases.size()), context.n_threads)),
-        features(features_of(*data.cases, cases, classes)) {
+        mean(math::row_mean(symmetric, math::all_rows(cases.size()), context.n_threads)) {
     for (Index i = 0; i < symmetric.rows(); ++i) symmetric.row(i) -= mean.transpose().cast<float>();
     const auto* smoother = context.warm == nullptr ? nullptr : context.warm->smoother();
+    features = features_of(*data.cases, cases, classes, names_of(smoother));
     if (smoother != nullptr && features.same_as(smoother->features())) earlier = smoother;
+    if (nothing_to_learn() || earlier_kernel(0) != nullptr) return;
+    earlier = nullptr;
+    choose(*data.cases, cases, cross_gram(symmetric, symmetric));
   }
 
   [[nodiscard]] bool nothing_to_learn() const {
@@ -148,6 +157,53 @@ struct FieldParts {
         return &group.kernel;
     }
     return nullptr;
+  }
+
+ private:
+  [[nodiscard]] static std::vector<std::string> names_of(const model::SmootherCoefficients* smoother) {
+    std::vector<std::string> names;
+    if (smoother == nullptr) return names;
+    for (const auto& feature : smoother->features().features()) names.push_back(feature.name);
+    return names;
+  }
+
+  struct Trial {
+    Features features;
+    model::SmootherKernel kernel;
+    double error = 0;  // leave-one-out
+  };
+  [[nodiscard]] static Trial trial(Features of, const MatrixXd& gram, math::Covariance covariance) {
+    const MatrixD& z = of.z;
+    auto kernel = fit_symmetric_kernel(z, of.of_class(0), gram, covariance);
+    const double error = leave_one_out_error(kernel.matrix(z, z), kernel.noise, gram);
+    return {std::move(of), std::move(kernel), error};
+  }
+  /// The covariance, and the form of each quantity that varies widely, of the least leave-one-out error: in
+  /// some form the field is smoothest, and only the cases know in which.
+  void choose(const field::CaseSet& cases, std::span<const std::size_t> rows, const MatrixXd& gram) {
+    using enum math::Covariance;
+    Trial best = trial(features, gram, matern52);
+    const auto take_better = [&](Trial other) {
+      if (other.error < best.error) best = std::move(other);
+    };
+    const auto other_covariance = [&] { return best.kernel.covariance == gaussian ? matern52 : gaussian; };
+    take_better(trial(best.features, gram, other_covariance()));
+    std::vector<std::string> chosen;
+    for (const auto& forms : features.derived.forms) {
+      for (const auto& form : forms) {
+        auto wanted = chosen;
+        wanted.push_back(form);
+        auto other = features_of(cases, rows, classes, wanted);
+        const bool new_form = !best.features.has(form);
+        if (new_form && other.of_class(0).size() == best.features.of_class(0).size())
+          take_better(trial(std::move(other), gram, best.kernel.covariance));
+      }
+      for (const auto& form : forms)
+        if (best.features.has(form)) chosen.push_back(form);
+    }
+    if (!chosen.empty()) take_better(trial(best.features, gram, other_covariance()));
+    features = std::move(best.features);
+    first = std::move(best.kernel);
   }
 };
 
@@ -230,16 +286,16 @@ Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, 
   const auto used = field.features.of_class(0);
   const MatrixD& z = field.features.z;
   const auto* near = field.earlier_kernel(0);
+  const auto& first = near == nullptr ? field.first.value() : *near;
   const int passes = std::max(options_.passes, 1);
   MatrixXd gram;
-  if (near == nullptr || passes == 1) gram = cross_gram(centred, centred);
   Learned learned{.kernel = {}, .shrunk = {}, .residuals = {}, .predicts = true};
   Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
   // Deviations of a left-out case are taken from the mean of the others: y_i n / (n - 1) on centred cases.
   const MatrixF truth = centred * static_cast<float>(n / (n - 1));
   for (int pass = 0; pass < passes; ++pass) {
     // An earlier kernel is near enough for the weights of the errors that the last search goes by.
-    learned.kernel = near != nullptr && pass + 1 < passes ? *near : fit_symmetric_kernel(z, used, gram, near);
+    learned.kernel = pass == 0 ? first : fit_symmetric_kernel(z, used, gram, first.covariance, near);
     MatrixXd left_out = Smoother(learned.kernel, z).leave_one_out();
     left_out.array() += 1 / (n - 1);
     left_out.diagonal().array() -= 1 / (n - 1);

@@ -18,18 +18,26 @@ using Eigen::VectorXd;
 /// Prior variance of the field's mean, in units of the signal: large, so that the data fix the mean.
 constexpr double mean_variance = 100;
 
-struct Matern {
+struct Stationary {
   MatrixXd squares, k, slope;  // r^2, m(r), (dm/dr) / r
 };
 
-Matern matern_of(const MatrixD& scaled) {
-  Matern m{math::squared_distances(scaled, scaled), {}, {}};
+Stationary stationary_of(const MatrixD& scaled, math::Covariance kind) {
+  Stationary m{math::squared_distances(scaled, scaled), {}, {}};
   m.squares.diagonal().setZero();
-  m.k = m.squares.unaryExpr(
-      [](double s) { return math::covariance(math::Covariance::matern52, std::sqrt(s)); });
-  m.slope = m.squares.unaryExpr(
-      [](double s) { return math::covariance_slope(math::Covariance::matern52, std::sqrt(s)); });
+  m.k = m.squares.unaryExpr([=](double s) { return math::covariance(kind, std::sqrt(s)); });
+  m.slope = m.squares.unaryExpr([=](double s) { return math::covariance_slope(kind, std::sqrt(s)); });
   return m;
+}
+
+/// d J / d log(length) of each input, from q = dJ/dK * (dk/dr) / r. @param a inputs over their lengths
+VectorXd length_slopes(const MatrixXd& q, const MatrixD& a) {
+  const VectorXd row_sums = q.rowwise().sum();
+  const MatrixD qa = q * a;
+  VectorXd slopes(a.cols());
+  for (Index j = 0; j < a.cols(); ++j)
+    slopes[j] = -2 * (row_sums.dot(a.col(j).cwiseAbs2()) - a.col(j).dot(qa.col(j)));
+  return slopes;
 }
 
 MatrixD columns(const MatrixD& z, const std::vector<Index>& used) {
@@ -39,13 +47,13 @@ MatrixD columns(const MatrixD& z, const std::vector<Index>& used) {
 }
 
 /// theta = (log lengths, log linear, log noise)
-double symmetric_objective(const MatrixD& x, const MatrixXd& gram, const VectorXd& theta,
-                           VectorXd& gradient) {
+double symmetric_objective(const MatrixD& x, const MatrixXd& gram, math::Covariance kind,
+                           const VectorXd& theta, VectorXd& gradient) {
   const Index p = x.cols();
   const VectorXd inverse = (-theta.head(p)).array().exp();
   const double linear = std::exp(theta[p]), noise = std::exp(theta[p + 1]);
   const MatrixD a = x * inverse.asDiagonal();
-  const Matern m = matern_of(a);
+  const Stationary m = stationary_of(a, kind);
   const MatrixXd dots = a * a.transpose();
   MatrixXd slope;
   const MatrixXd k = (m.k + linear * dots).array() + mean_variance;
@@ -53,13 +61,9 @@ double symmetric_objective(const MatrixD& x, const MatrixXd& gram, const VectorX
 
   gradient.setZero(theta.size());
   if (!std::isfinite(value)) return value;
-  const MatrixXd q = slope.cwiseProduct(m.slope);
-  const VectorXd row_sums = q.rowwise().sum();
-  const MatrixD qa = q * a, sa = slope * a;
-  for (Index j = 0; j < p; ++j) {
-    gradient[j] = -2 * (row_sums.dot(a.col(j).cwiseAbs2()) - a.col(j).dot(qa.col(j))) -
-                  2 * linear * sa.col(j).dot(a.col(j));
-  }
+  const MatrixD sa = slope * a;
+  gradient.head(p) = length_slopes(slope.cwiseProduct(m.slope), a);
+  for (Index j = 0; j < p; ++j) gradient[j] -= 2 * linear * sa.col(j).dot(a.col(j));
   gradient[p] = linear * slope.cwiseProduct(dots).sum();
   gradient[p + 1] = noise * slope.trace();
   return value;
@@ -67,11 +71,11 @@ double symmetric_objective(const MatrixD& x, const MatrixXd& gram, const VectorX
 
 /// theta = (log weights of the imbalances, log linear, log common length factor, log noise)
 double antisymmetric_objective(const MatrixD& a, const MatrixD& o, const MatrixXd& gram,
-                               const VectorXd& theta, VectorXd& gradient) {
+                               math::Covariance kind, const VectorXd& theta, VectorXd& gradient) {
   const Index p = o.cols();
   const VectorXd weights = theta.head(p).array().exp();
   const double linear = std::exp(theta[p]), noise = std::exp(theta[p + 2]);
-  const Matern m = matern_of(a * std::exp(-theta[p + 1]));
+  const Stationary m = stationary_of(a * std::exp(-theta[p + 1]), kind);
   const MatrixXd products = o * weights.asDiagonal() * o.transpose();
   const MatrixXd near = m.k.array() + linear;
   MatrixXd slope;
@@ -85,6 +89,25 @@ double antisymmetric_objective(const MatrixD& a, const MatrixD& o, const MatrixX
   gradient[p] = linear * sp.sum();
   gradient[p + 1] = -sp.cwiseProduct(m.slope).cwiseProduct(m.squares).sum();
   gradient[p + 2] = noise * slope.trace();
+  return value;
+}
+
+/// theta = (log lengths or log common length, log noise)
+double stationary_objective(const MatrixD& x, const MatrixXd& gram, math::Covariance kind,
+                            const VectorXd& theta, VectorXd& gradient) {
+  const Index n = theta.size() - 1;
+  const double noise = std::exp(theta[n]);
+  MatrixD a = x;
+  for (Index j = 0; j < x.cols(); ++j) a.col(j) *= std::exp(-theta[std::min(j, n - 1)]);
+  const Stationary m = stationary_of(a, kind);
+  MatrixXd slope;
+  const double value = leave_one_out_error(m.k, noise, gram, &slope);
+
+  gradient.setZero(theta.size());
+  if (!std::isfinite(value)) return value;
+  const VectorXd slopes = length_slopes(slope.cwiseProduct(m.slope), a);
+  for (Index j = 0; j < x.cols(); ++j) gradient[std::min(j, n - 1)] += slopes[j];
+  gradient[n] = noise * slope.trace();
   return value;
 }
 
@@ -150,19 +173,42 @@ double leave_one_out_error(const MatrixXd& covariance, double noise, const Matri
   return q.diagonal().dot(weight);
 }
 
+StationaryKernel fit_stationary_kernel(const MatrixD& x, const MatrixXd& gram, math::Covariance covariance,
+                                       bool isotropic, std::span<const StationaryKernel> starts) {
+  const Index n = isotropic ? 1 : x.cols();
+  const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
+    return stationary_objective(x, gram, covariance, theta, gradient);
+  };
+  math::Minimum best{{}, std::numeric_limits<double>::infinity(), 0};
+  for (const auto& from : starts) {
+    VectorXd theta(n + 1);
+    for (Index j = 0; j < n; ++j) theta[j] = std::log(from.lengths[std::min(j, from.lengths.size() - 1)]);
+    theta[n] = std::log(from.noise);
+    const math::Minimum found = math::minimise(normalised(objective, gram.trace()), theta,
+                                               logs(n, 0.3, {1e-8}), logs(n, 1e3, {100}), search);
+    if (found.value < best.value || best.x.size() == 0) best = found;
+  }
+  StationaryKernel kernel{VectorXd(x.cols()), std::exp(best.x[n]), best.value * gram.trace()};
+  for (Index j = 0; j < x.cols(); ++j) kernel.lengths[j] = std::exp(best.x[std::min(j, n - 1)]);
+  return kernel;
+}
+
 model::SmootherKernel fit_symmetric_kernel(const MatrixD& z, const std::vector<Index>& used,
-                                           const MatrixXd& gram, const model::SmootherKernel* near) {
+                                           const MatrixXd& gram, math::Covariance covariance,
+                                           const model::SmootherKernel* near) {
   const MatrixD x = columns(z, used);
   const auto p = x.cols();
   const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
-    return symmetric_objective(x, gram, theta, gradient);
+    return symmetric_objective(x, gram, covariance, theta, gradient);
   };
   const math::Minimum best = math::minimise(
       normalised(objective, gram.trace()),
-      near == nullptr ? logs(p, 4, {0.3, 0.3}) : symmetric_start(*near, used), logs(p, 0.5, {1e-3, 1e-4}),
+      near == nullptr ? logs(p, 4, {0.3, 0.3}) : symmetric_start(*near, used), logs(p, 0.5, {1e-3, 1e-8}),
       logs(p, 200, {30, 100}), near == nullptr ? search : search_nearby);
-  model::SmootherKernel kernel{
-      .linear = std::exp(best.x[p]), .constant = mean_variance, .noise = std::exp(best.x[p + 1])};
+  model::SmootherKernel kernel{.covariance = covariance,
+                               .linear = std::exp(best.x[p]),
+                               .constant = mean_variance,
+                               .noise = std::exp(best.x[p + 1])};
   kernel.inverse_lengths = kernel.imbalance = VectorXd::Zero(z.cols());
   for (Index j = 0; j < p; ++j)
     kernel.inverse_lengths[used[static_cast<std::size_t>(j)]] = std::exp(-best.x[j]);
@@ -175,14 +221,16 @@ model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z, const model::Sm
   const MatrixD a = z * symmetric.inverse_lengths.asDiagonal(), o = columns(z, imbalances);
   const auto p = o.cols();
   const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
-    return antisymmetric_objective(a, o, gram, theta, gradient);
+    return antisymmetric_objective(a, o, gram, symmetric.covariance, theta, gradient);
   };
   const math::Minimum best = math::minimise(
       normalised(objective, gram.trace()),
       near == nullptr ? logs(p, 0.1, {1, 1, 1}) : antisymmetric_start(*near, symmetric, imbalances),
       logs(p, 1e-5, {1e-3, 0.2, 0.1}), logs(p, 10, {10, 30, 1e4}), near == nullptr ? search : search_nearby);
-  model::SmootherKernel kernel{
-      .antisymmetric = true, .linear = std::exp(best.x[p]), .noise = std::exp(best.x[p + 2])};
+  model::SmootherKernel kernel{.antisymmetric = true,
+                               .covariance = symmetric.covariance,
+                               .linear = std::exp(best.x[p]),
+                               .noise = std::exp(best.x[p + 2])};
   kernel.inverse_lengths = symmetric.inverse_lengths * std::exp(-best.x[p + 1]);
   kernel.imbalance = VectorXd::Zero(z.cols());
   for (Index j = 0; j < p; ++j)

@@ -3,7 +3,9 @@
 // of whole fields, in closed form; internal to study.
 
 #include <Eigen/Core>
+#include <span>
 
+#include "elrom/math/kernel.hpp"
 #include "elrom/math/matrix.hpp"
 #include "elrom/model/smoother_coefficients.hpp"
 
@@ -16,11 +18,26 @@ namespace elrom::methods {
 [[nodiscard]] double leave_one_out_error(const Eigen::MatrixXd& covariance, double noise,
                                          const Eigen::MatrixXd& gram, Eigen::MatrixXd* slope = nullptr);
 
+/// One length scale for each input, and the noise beside a signal of 1.
+struct StationaryKernel {
+  Eigen::VectorXd lengths;  //!< (n_inputs)
+  double noise = 1;
+  double error = 0;  ///< leave_one_out_error()
+};
+
+/// Lengths and noise of the least leave-one-out error among searches from each of `starts`.
+/// @param x standardised inputs, (n_cases, n_inputs) @param isotropic one length for all inputs
+/// @param starts lengths and noise; lengths of one entry, or one an input
+[[nodiscard]] StationaryKernel fit_stationary_kernel(const MatrixD& x, const Eigen::MatrixXd& gram,
+                                                     math::Covariance covariance, bool isotropic,
+                                                     std::span<const StationaryKernel> starts);
+
 /// @param z standardised features, (n_cases, n_features) @param used features of the symmetric part
 /// @param near a kernel of the same features to search from, in a few steps; nullptr: from the usual start
 [[nodiscard]] model::SmootherKernel fit_symmetric_kernel(const MatrixD& z,
                                                          const std::vector<Eigen::Index>& used,
                                                          const Eigen::MatrixXd& gram,
+                                                         math::Covariance covariance,
                                                          const model::SmootherKernel* near = nullptr);
 
 /// @param symmetric the field's symmetric kernel: its lengths are kept, up to one common factor

@@ -15,6 +15,7 @@
 #include "elrom/model/coefficient_models.hpp"
 #include "elrom/model/nearest_model.hpp"
 #include "elrom/model/pod_model.hpp"
+#include "leave_one_out.hpp"
 #include "pod_modes.hpp"
 
 namespace elrom::methods {
@@ -237,71 +238,66 @@ math::Covariance best_covariance(const Error& error) {
   return best;
 }
 
-class Gp : public PodPeer {
+/// One covariance for all modes, its lengths and noise by the error of the field itself. Not by likelihood:
+/// the noise of POD coefficients is the same in every mode, so modes that are nothing but noise (of a smooth
+/// field: rounding) would tell the strong ones how noisy they are.
+class SharedGp final : public PodPeer {
  public:
   using PodPeer::PodPeer;
 
  protected:
-  [[nodiscard]] math::GaussianProcess fit_process(const MatrixD& inputs, const MatrixXd& targets,
-                                                  math::Covariance covariance) const {
-    math::GpFitOptions gp{.covariance = covariance,
-                          .isotropic = true,
-                          .start_lengths = options().gp_start_lengths,
-                          .start_noises = options().gp_start_noises,
-                          .max_iterations = options().gp_iterations};
-    math::GpParameters best = math::fit_gp(inputs, targets, gp);
-    double least = information(inputs, targets, best, 3);
-    const auto isotropic = best;
-    gp.isotropic = false;
-    for (const bool near : {true, false}) {
-      gp.start_lengths = {near ? isotropic.length_scales[0] : options().gp_start_lengths.front()};
-      gp.start_noises = {near ? isotropic.noise_variance : options().gp_start_noises.front()};
-      math::GpParameters own = math::fit_gp(inputs, targets, gp);
-      const double found = information(inputs, targets, own, inputs.cols() + 2);
-      if (found >= least) continue;
-      least = found;
-      best = std::move(own);
-    }
-    return {inputs, targets, std::move(best)};
+  [[nodiscard]] Coefficients fit_coefficients(const TrainingInputs& inputs, const MatrixXd& coefficients,
+                                              const FitContext&) const override {
+    const MatrixD& x = inputs.standardised;
+    const Chosen chosen = choose(x, coefficients * coefficients.transpose());
+    math::GpParameters parameters{chosen.kernel.lengths, 1, chosen.kernel.noise, chosen.covariance};
+    const math::GaussianProcess all(x, coefficients, parameters);
+    const MatrixXd residuals = all.leave_one_out_residuals();
+    const Index n = predictable_modes(squared_columns(residuals), squared_columns(coefficients));
+    const VectorXd scale = signal_of(all, residuals.leftCols(n));
+    const MatrixXd targets = coefficients.leftCols(n) * scale.cwiseInverse().asDiagonal();
+    return std::make_shared<model::GpCoefficients>(
+        inputs.scaler, x, std::vector{math::GaussianProcess(x, targets, std::move(parameters))}, scale);
   }
 
  private:
-  /// Schwarz's (1978) criterion, halved: likelihood alone follows noise once inputs are many.
-  [[nodiscard]] static double information(const MatrixD& inputs, const MatrixXd& targets,
-                                          const math::GpParameters& parameters, Index n_parameters) {
-    VectorXd theta(inputs.cols() + 2), gradient;
-    theta << parameters.length_scales.array().log().matrix(), std::log(parameters.signal_variance),
-        std::log(parameters.noise_variance);
-    const auto n = static_cast<double>(targets.size());
-    return n * math::gp_negative_log_likelihood(inputs, targets, parameters.covariance, theta, gradient) +
-           0.5 * static_cast<double>(n_parameters) * std::log(n);
+  struct Chosen {
+    StationaryKernel kernel;
+    math::Covariance covariance = covariances.front();
+  };
+  [[nodiscard]] Chosen choose(const MatrixD& x, const MatrixXd& gram) const {
+    std::vector<StationaryKernel> starts;
+    for (std::size_t i = 0; i < options().gp_start_lengths.size(); ++i)
+      starts.push_back({VectorXd::Constant(1, options().gp_start_lengths[i]), options().gp_start_noises[i]});
+    Chosen best{{.error = std::numeric_limits<double>::infinity()}};
+    for (const auto covariance : covariances) {
+      auto found = fit_stationary_kernel(x, gram, covariance, true, starts);
+      if (found.error < best.kernel.error) best = {std::move(found), covariance};
+    }
+    starts.resize(1);
+    starts.push_back(best.kernel);
+    auto each = fit_stationary_kernel(x, gram, best.covariance, false, starts);
+    if (worth_own_lengths(each.error, best.kernel.error, x)) best.kernel = std::move(each);
+    return best;
+  }
+  /// Schwarz's (1978) criterion of the left-out errors, one datum a case: more lengths always lower the error
+  /// that they are fitted to, with few cases and many inputs by following noise.
+  [[nodiscard]] static bool worth_own_lengths(double error, double isotropic, const MatrixD& x) {
+    const auto n = static_cast<double>(x.rows()), more = static_cast<double>(x.cols() - 1);
+    return n * std::log(error) + more * std::log(n) < n * std::log(isotropic);
+  }
+  /// Deviation of each coefficient's process: the one that makes its errors as large as they are, on average
+  /// (Sundararajan & Keerthi 2001).
+  [[nodiscard]] static VectorXd signal_of(const math::GaussianProcess& process, const MatrixXd& residuals) {
+    const VectorXd precision = process.inverse_factor().colwise().squaredNorm().transpose();
+    const VectorXd variance = (precision.asDiagonal() * residuals.cwiseAbs2()).colwise().mean().transpose();
+    return variance.cwiseMax(1e-12 * variance.maxCoeff() + 1e-300).cwiseSqrt();
   }
 };
 
-class SharedGp final : public Gp {
+class GpPerMode final : public PodPeer {
  public:
-  using Gp::Gp;
-
- protected:
-  [[nodiscard]] Coefficients fit_coefficients(const TrainingInputs& inputs, const MatrixXd& coefficients,
-                                              const FitContext&) const override {
-    const GpTask task(inputs.standardised, coefficients);
-    const MatrixXd first =
-        task.targets.leftCols(std::min<Index>(options().shared_modes, task.targets.cols()));
-    const auto covariance = best_covariance(
-        [&](math::Covariance kind) { return task.errors(fit_process(task.inputs, first, kind), 0).sum(); });
-    const math::GaussianProcess tried = fit_process(task.inputs, first, covariance);
-    const math::GaussianProcess all(task.inputs, task.targets, tried.parameters());
-    const Index n = predictable_modes(task.errors(all, 0), task.energies());
-    return std::make_shared<model::GpCoefficients>(
-        inputs.scaler, inputs.standardised,
-        std::vector{fit_process(task.inputs, task.targets.leftCols(n), covariance)}, task.scale.head(n));
-  }
-};
-
-class GpPerMode final : public Gp {
- public:
-  using Gp::Gp;
+  using PodPeer::PodPeer;
 
  protected:
   [[nodiscard]] Coefficients fit_coefficients(const TrainingInputs& inputs, const MatrixXd& coefficients,
@@ -328,6 +324,40 @@ class GpPerMode final : public Gp {
   }
 
  private:
+  [[nodiscard]] math::GaussianProcess fit_process(const MatrixD& inputs, const MatrixXd& targets,
+                                                  math::Covariance covariance) const {
+    math::GpFitOptions gp{.covariance = covariance,
+                          .isotropic = true,
+                          .start_lengths = options().gp_start_lengths,
+                          .start_noises = options().gp_start_noises,
+                          .max_iterations = options().gp_iterations};
+    math::GpParameters best = math::fit_gp(inputs, targets, gp);
+    double least = information(inputs, targets, best, 3);
+    const auto isotropic = best;
+    gp.isotropic = false;
+    for (const bool near : {true, false}) {
+      gp.start_lengths = {near ? isotropic.length_scales[0] : options().gp_start_lengths.front()};
+      gp.start_noises = {near ? isotropic.noise_variance : options().gp_start_noises.front()};
+      math::GpParameters own = math::fit_gp(inputs, targets, gp);
+      const double found = information(inputs, targets, own, inputs.cols() + 2);
+      if (found >= least) continue;
+      least = found;
+      best = std::move(own);
+    }
+    return {inputs, targets, std::move(best)};
+  }
+
+  /// Schwarz's (1978) criterion, halved: likelihood alone follows noise once inputs are many.
+  [[nodiscard]] static double information(const MatrixD& inputs, const MatrixXd& targets,
+                                          const math::GpParameters& parameters, Index n_parameters) {
+    VectorXd theta(inputs.cols() + 2), gradient;
+    theta << parameters.length_scales.array().log().matrix(), std::log(parameters.signal_variance),
+        std::log(parameters.noise_variance);
+    const auto n = static_cast<double>(targets.size());
+    return n * math::gp_negative_log_likelihood(inputs, targets, parameters.covariance, theta, gradient) +
+           0.5 * static_cast<double>(n_parameters) * std::log(n);
+  }
+
   [[nodiscard]] std::vector<math::GaussianProcess> fit_modes(const GpTask& task, Index first, Index n,
                                                              math::Covariance covariance,
                                                              const FitContext& context) const {

@@ -8,8 +8,9 @@
 
 namespace elrom::methods {
 
-/// Number of modes, in order of energy, that leaves the least error of the field: of a mode that is kept its
-/// error on cases left out, of a mode that is dropped its energy. At least 1, where there is one.
+/// The fewest modes, in order of energy, that leave the least error of the field or a thousandth more of its
+/// square: of a mode that is kept its error on cases left out, of a mode that is dropped its energy. At least
+/// 1, where there is one.
 /// @param errors of each mode that was tried, not finite for none @param energies of all modes, at least as
 /// many; both as sums or both as means over the cases
 [[nodiscard]] Eigen::Index predictable_modes(const Eigen::VectorXd& errors, const Eigen::VectorXd& energies);

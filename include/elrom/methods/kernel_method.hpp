@@ -2,7 +2,8 @@
 // Method "kernel": one kernel smoother a field on derived inputs, for the symmetric and
 // each antisymmetric part of the field on its own. Hyperparameters, and how far every
 // wavelength and every cell is trusted, minimise the leave-one-case-out error in closed
-// form (Allen 1974; Craven & Wahba 1979 for linear smoothers).
+// form (Allen 1974; Craven & Wahba 1979 for linear smoothers). So do the covariance (Matern 5/2 or Gaussian) and
+// the form in which an input enters that varies by more than a factor of two (itself, logarithm, inverse).
 //
 // Why it does better than POD with a process a mode on few cases: mirror images are
 // used exactly instead of by augmentation; all modes share one covariance with few,
@@ -17,7 +18,7 @@ namespace elrom::methods {
 struct KernelOptions {
   /// Energy that truncating the modes of a part may drop, as a share of the error's energy
   double dropped = 1e-3;
-  std::size_t most_modes = 40;  ///< for the symmetric part; an antisymmetric part has at most a quarter of it
+  std::size_t most_modes = 80;  ///< for the symmetric part; an antisymmetric part has at most a quarter of it
   int passes = 2;  ///< searches; from the second on, errors are weighted by what the first one trusts
   bool antisymmetric = true;  ///< learn the antisymmetric parts too, instead of predicting none
   bool shrink = true;         ///< spectral and cell-wise shrinkage

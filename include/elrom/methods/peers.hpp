@@ -10,12 +10,16 @@
 //   pod_rbf           smoothing for each mode: the least error; function and degree of the tail, shared by
 // all
 //                     modes: the least error (linear, with a constant or a linear tail; thin plate; cubic)
-//   pod_gp, per_mode  length scales, signal and noise by likelihood, with one length scale for all inputs (of
+//   pod_gp            one covariance for all modes. Lengths and noise: the least error of the field
+//                     (Sundararajan & Keerthi 2001), not the likelihood, in which modes that are nothing but
+//                     noise count as much as those that matter. One length scale for all inputs (from each of
+//                     `gp_start_lengths`), or one each where Schwarz's (1978) criterion of those errors says
+//                     so. Covariance (Matern 3/2, Matern 5/2, Gaussian): the least error
+//   pod_gp_per_mode   length scales, signal and noise by likelihood, with one length scale for all inputs (of
 //                     `gp_start_lengths` the best) and with one each (from where that ended, and from the
-//                     first of them): of the three the least information criterion (Schwarz 1978). Covariance
-//                     (Matern 3/2, Matern 5/2, Gaussian), shared by all modes: the least error of the first
-// `shared_modes` or
-//                     `covariance_modes`. Per mode: in blocks, until one gains nothing
+//                     first of them): of the three the least information criterion (Schwarz 1978).
+//                     Covariance, shared by all modes: the least error of the first `covariance_modes`. In
+//                     blocks of modes, until one gains nothing
 // pod_mlp, which needs a trainer, has a header of its own.
 
 #include <memory>
@@ -32,7 +36,6 @@ struct PeerOptions {
   std::size_t most_modes = 60;
   int mode_block = 5;         ///< modes of pod_gp_per_mode that are tried at a time
   int covariance_modes = 4;   ///< a covariance is chosen by so many modes of pod_gp_per_mode
-  int shared_modes = 15;      ///< so many modes train pod_gp before it chooses how many it keeps
   int smoothing_decades = 8;  ///< RBF smoothing: 0, and from 10^-decades to 10^2 by factors of 10
   std::vector<double> gp_start_lengths{5.0, 1.5};  ///< of the likelihood's search, in standard deviations
   std::vector<double> gp_start_noises{0.1, 1e-3};  ///< one for each start

@@ -7,18 +7,20 @@
 #include <string>
 #include <vector>
 
+#include "elrom/math/kernel.hpp"
 #include "elrom/math/standardiser.hpp"
 #include "elrom/model/coefficient_model.hpp"
 #include "elrom/model/feature_map.hpp"
 
 namespace elrom::model {
 
-/// Covariance of two cases with standardised derived inputs z and z', m(r) = Matern 5/2:
+/// Covariance of two cases with standardised derived inputs z and z', m(r) = Matern 5/2 or Gaussian:
 ///   symmetric      k = m(r) + linear * (a . a') + constant
 ///   antisymmetric  k = (u . u') * (linear + m(r)), odd in u: a mirrored case gives the mirrored answer
 /// with a = z * inverse_lengths, r = |a - a'|, u = z * imbalance.
 struct SmootherKernel {
   bool antisymmetric = false;
+  math::Covariance covariance = math::Covariance::matern52;  ///< m(r)
   double linear = 0;
   double constant = 0;
   double noise = 1;                 ///< added to the covariance of a case with itself
