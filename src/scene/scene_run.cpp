@@ -77,6 +77,18 @@ struct CellSums {
   Vec momentum;
 };
 
+// A text of a checkpoint that grows with the run: as a tensor, since a header is short.
+io::Tensor as_tensor(const std::string& text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  return io::Tensor::copy(std::span(bytes), {bytes.size()});
+}
+
+std::string read_text(const io::TensorFile& file, const std::string& name) {
+  const auto tensor = file.tensor(name, std::array{io::any_size});
+  const auto bytes = tensor.u8();
+  return {bytes.begin(), bytes.end()};
+}
+
 // By where the centres are.
 std::string section_rows(const SectionSettings& section, const State& state, const Domain& domain) {
   const auto& p = state.particles;
@@ -154,15 +166,16 @@ class Outputs {
   }
 
   void save(io::TensorFile& file) const {
-    file.set_text("series", series_);
-    file.set_text("movie", movie_);
+    file.set("series", as_tensor(series_));
+    file.set("movie", as_tensor(movie_));
     for (std::size_t k = 0; k < sections_.size(); ++k)
-      file.set_text(fmt::format("section_{}", k), sections_[k]);
+      file.set(fmt::format("section_{}", k), as_tensor(sections_[k]));
   }
   void load(const io::TensorFile& file) {
-    series_ = file.text("series");
-    movie_ = file.text("movie");
-    for (std::size_t k = 0; k < sections_.size(); ++k) sections_[k] = file.text(fmt::format("section_{}", k));
+    series_ = read_text(file, "series");
+    movie_ = read_text(file, "movie");
+    for (std::size_t k = 0; k < sections_.size(); ++k)
+      sections_[k] = read_text(file, fmt::format("section_{}", k));
   }
 
  private:

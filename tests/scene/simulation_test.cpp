@@ -243,6 +243,23 @@ TEST(SceneCheckpoint, OfAnotherSceneOrDamagedIsRefused) {
   EXPECT_ERROR(InputError, "damaged checkpoint", one.load(damaged));
 }
 
+// A tensor file's header takes 4 MiB; ten seconds of sections are longer.
+TEST(SceneCheckpoint, TablesMayBeLongerThanAHeader) {
+  const test::TemporaryFolder folder;
+  const auto run_for = [&](const std::string& duration) {
+    Simulation simulation(
+        scene("[output]\nevery = 0.001\ncheckpoint_every = 0.001\n[[probes.sections]]\nname = \"all\"\n"
+              "low = [0, 0, 0]\nhigh = [0.02, 0.02, 0.02]\ncells = [40, 50, 50]\n",
+              1, "", "0.001", duration),
+        1);
+    run(simulation, folder / "o", silent_log(), {});
+  };
+  run_for("0.001");
+  run_for("0.002");
+
+  EXPECT_GT(std::filesystem::file_size(folder / "o" / "section_all.csv"), std::size_t{3} * 4'194'304);
+}
+
 TEST(SceneHardCases, EndInFiniteNumbers) {
   for (const auto* collisions : {"none", "dem", "helscm", "helscm_document"})
     for (const int number : {0, 1, 20})
