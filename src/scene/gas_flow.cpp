@@ -73,17 +73,22 @@ Beyond beyond(const Domain& domain, const std::vector<GasInlet>& inlets, const V
   return {};
 }
 
+bool is_open(const CellGrid& grid, std::int32_t c) {
+  return c != none && grid.is_open(static_cast<std::size_t>(c));
+}
+
+// Behind a side of a cell.
+Beyond beyond(const Domain& domain, const std::vector<GasInlet>& inlets, const CellGrid& grid, std::size_t c,
+              std::size_t axis, int side) {
+  Vec outside = grid.centre(c);
+  (axis == 0 ? outside.x : axis == 1 ? outside.y : outside.z) += side * grid.step()[axis];
+  return beyond(domain, inlets, grid.centre(c), outside);
+}
+
 }  // namespace
 
 void GasFlow::find_faces(const Domain& domain, const std::vector<GasInlet>& inlets) {
   const auto& g = *grid_;
-  const auto cell_size = g.step();
-  const auto out = [&](std::size_t c, std::size_t a, int side) {
-    Vec shift;
-    (a == 0 ? shift.x : a == 1 ? shift.y : shift.z) = side * cell_size[a];
-    return beyond(domain, inlets, g.centre(c), g.centre(c) + shift);
-  };
-  const auto is_open = [&](std::int32_t c) { return c != none && g.is_open(static_cast<std::size_t>(c)); };
   bool has_outlets = false, has_inlets = false;
   for (std::size_t c = 0; c < g.size(); ++c)
     for (std::size_t a = 0; a < 3 && g.is_open(c); ++a)
@@ -91,11 +96,11 @@ void GasFlow::find_faces(const Domain& domain, const std::vector<GasInlet>& inle
         const auto other = g.neighbour(c, a, side);
         const auto number = g.face(c, a, side);
         const auto me = static_cast<std::int32_t>(c);
-        if (is_open(other)) {
+        if (is_open(g, other)) {
           if (side < 0) faces_.push_back({Face::Kind::inside, a, number, other, me});
           continue;
         }
-        const auto what = out(c, a, side);
+        const auto what = beyond(domain, inlets, g, c, a, side);
         if (!what.is_outlet && what.inlet == nullptr) continue;
         has_outlets = has_outlets || what.is_outlet;
         Face face{what.is_outlet ? Face::Kind::outlet : Face::Kind::inlet, a, number, side < 0 ? none : me,
@@ -108,35 +113,37 @@ void GasFlow::find_faces(const Domain& domain, const std::vector<GasInlet>& inle
       }
   if (has_inlets && !has_outlets)
     throw UsageError(Problem{.what = "gas comes in and has nowhere to go", .expected = "domain.outlets"});
-  for (auto& face : faces_) {
-    const std::size_t inner = face.inner(), a = face.axis;
-    const auto near = [&](std::int32_t c, int side) -> std::int32_t {
-      if (c == none) return none;
-      const auto f = g.face(static_cast<std::size_t>(c), a, side);
-      return static_cast<std::int32_t>(f);
-    };
-    face.along = {near(face.low, -1), near(face.high, 1)};
-    for (std::size_t b = 0; b < 3; ++b) {
-      if (b == a) continue;
-      const auto at_low = face.low == none ? inner : static_cast<std::size_t>(face.low),
-                 at_high = face.high == none ? inner : static_cast<std::size_t>(face.high);
-      face.cross[b] = {static_cast<std::int32_t>(g.face(at_low, b, -1)),
-                       static_cast<std::int32_t>(g.face(at_low, b, 1)),
-                       static_cast<std::int32_t>(g.face(at_high, b, -1)),
-                       static_cast<std::int32_t>(g.face(at_high, b, 1))};
-      for (const int side : {-1, 1}) {
-        const auto k = static_cast<std::size_t>(side > 0);
-        const auto beside = g.neighbour(inner, b, side);
-        face.beside[b][k] = none, face.wall[b][k] = 0;
-        if (is_open(beside)) {
-          const auto f = g.face(static_cast<std::size_t>(beside), a, face.low == none ? -1 : 1);
-          if (g.is_face_open(a, f)) face.beside[b][k] = static_cast<std::int32_t>(f);
-          continue;
-        }
-        const auto what = out(inner, b, side);
-        if (what.is_outlet) face.beside[b][k] = static_cast<std::int32_t>(face.number);
-        if (what.inlet != nullptr) face.wall[b][k] = array_of(what.inlet->velocity)[a];
+  for (auto& face : faces_) look_around(domain, inlets, face);
+}
+
+void GasFlow::look_around(const Domain& domain, const std::vector<GasInlet>& inlets, Face& face) const {
+  const auto& g = *grid_;
+  const std::size_t inner = face.inner(), a = face.axis;
+  const auto near = [&](std::int32_t c, int side) -> std::int32_t {
+    if (c == none) return none;
+    const auto f = g.face(static_cast<std::size_t>(c), a, side);
+    return static_cast<std::int32_t>(f);
+  };
+  face.along = {near(face.low, -1), near(face.high, 1)};
+  for (std::size_t b = 0; b < 3; ++b) {
+    if (b == a) continue;
+    const auto at_low = face.low == none ? inner : static_cast<std::size_t>(face.low),
+               at_high = face.high == none ? inner : static_cast<std::size_t>(face.high);
+    face.cross[b] = {
+        static_cast<std::int32_t>(g.face(at_low, b, -1)), static_cast<std::int32_t>(g.face(at_low, b, 1)),
+        static_cast<std::int32_t>(g.face(at_high, b, -1)), static_cast<std::int32_t>(g.face(at_high, b, 1))};
+    for (const int side : {-1, 1}) {
+      const auto k = static_cast<std::size_t>(side > 0);
+      const auto beside = g.neighbour(inner, b, side);
+      face.beside[b][k] = none, face.wall[b][k] = 0;
+      if (is_open(g, beside)) {
+        const auto f = g.face(static_cast<std::size_t>(beside), a, face.low == none ? -1 : 1);
+        if (g.is_face_open(a, f)) face.beside[b][k] = static_cast<std::int32_t>(f);
+        continue;
       }
+      const auto what = beyond(domain, inlets, g, inner, b, side);
+      if (what.is_outlet) face.beside[b][k] = static_cast<std::int32_t>(face.number);
+      if (what.inlet != nullptr) face.wall[b][k] = array_of(what.inlet->velocity)[a];
     }
   }
 }
@@ -149,11 +156,8 @@ void GasFlow::scale_inlets(const Domain& domain, const std::vector<GasInlet>& in
     std::vector<Face*> mine;
     for (auto& face : faces_) {
       if (face.kind != Face::Kind::inlet) continue;
-      Vec outside = grid_->centre(face.inner());
-      (face.axis == 0   ? outside.x
-       : face.axis == 1 ? outside.y
-                        : outside.z) += (face.low == none ? -1 : 1) * grid_->step()[face.axis];
-      if (beyond(domain, inlets, grid_->centre(face.inner()), outside).inlet != &inlet) continue;
+      const int way = face.low == none ? -1 : 1;
+      if (beyond(domain, inlets, *grid_, face.inner(), face.axis, way).inlet != &inlet) continue;
       mine.push_back(&face);
       found += (face.low == none ? 1 : -1) * face.inflow * grid_->volume() / grid_->step()[face.axis];
     }

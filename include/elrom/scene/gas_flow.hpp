@@ -83,6 +83,7 @@ class GasFlow {
   struct Equation;
   struct Links;
   void find_faces(const Domain& domain, const std::vector<GasInlet>& inlets);
+  void look_around(const Domain& domain, const std::vector<GasInlet>& inlets, Face& face) const;
   void scale_inlets(const Domain& domain, const std::vector<GasInlet>& inlets);
   [[nodiscard]] double step_of(double dt) const;
   void step(double dt, const GasLoad& load);
