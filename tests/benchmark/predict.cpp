@@ -2,6 +2,7 @@
 // this machine and beside the same networks in LibTorch.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,8 @@
 #include "elrom/base/app.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/model/banded_networks.hpp"
+#include "elrom/model/bundle.hpp"
 #include "elrom/model/predictor.hpp"
 #include "predict_floor.hpp"
 #include "processes.hpp"
@@ -179,12 +182,23 @@ class Benchmark {
     std::filesystem::remove_all(setup.output);
   }
 
+  static bool is_networks(const std::filesystem::path& bundle) {
+    const model::BundleReader reader(bundle);
+    return std::ranges::all_of(reader.info().fields, [&](const field::FieldInfo& info) {
+      return dynamic_cast<const model::BandedNetworks*>(reader.model(info.name).get()) != nullptr;
+    });
+  }
+
   void libtorch(const Setup& setup) {
     const auto program = options_.programs / "bench-libtorch-one-shot";
     result_["libtorch_one_shot_ms"] = nullptr;
     result_["ratio_to_libtorch"] = nullptr;
     if (!std::filesystem::exists(program)) {
       fmt::print("the same networks in LibTorch: not built (ELROM_TORCH is off)\n");
+      return;
+    }
+    if (!is_networks(setup.bundle)) {
+      fmt::print("the same networks in LibTorch: left out, other models answer for some fields\n");
       return;
     }
     std::filesystem::create_directories(setup.output);
