@@ -121,9 +121,10 @@ void add_check(cli::App& program, Work& chosen) {
   auto* command = program.add_subcommand(
       "check",
       R"(Looks for suspicious data: cells that are not finite or beyond physical bounds, unit mistakes, duplicate cases,
-cases that lie apart from the others, fields and inputs that never change, and physics: gas balance by plane, direction
-of flow, solids inventory, roughness, and whether the mesh fills the reduced one. Cases are compared with each other, so
-give the store (or all files) together with a new file. Exit status 3 when something is suspicious.)");
+cases that lie apart from the others, fields that are empty or copies of another, fields and inputs that never change,
+and physics: continuity and balance of the gas, direction of flow, solids inventory and the pressure that carries it,
+roughness, and whether the mesh fills the reduced one. Cases are compared with each other, so give the store (or all
+files) together with a new file. Exit status 3 when something is suspicious. data/FORMATS.md lists all limits.)");
   auto options = std::make_shared<CheckOptions>();
   command
       ->add_option("targets", options->targets,

@@ -43,10 +43,13 @@ class PostgresqlServer {
     return "postgresql://elrom@/postgres?host=" + folder_.path().string();
   }
   void start() {
-    process_ = begin({program("postgres"), "-D", data(), "-k", folder_.path().string(), "-c",
-                      "listen_addresses=", "-c", "fsync=off", "-c", "max_connections=100"});
+    const std::vector<std::string> server{
+        program("postgres"), "-D", data(),      "-k", folder_.path().string(), "-c",
+        "listen_addresses=", "-c", "fsync=off", "-c", "max_connections=100"};
     const auto socket = folder_ / ".s.PGSQL.5432";
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 1200; ++i) {
+      // It ends at once while workers of a killed one still hold their memory.
+      if (process_ <= 0 || ::waitpid(process_, nullptr, WNOHANG) == process_) process_ = begin(server);
       if (std::filesystem::exists(socket) &&
           wait_for(begin({program("pg_isready"), "-q", "-h", folder_.path().string()})) == 0)
         return;

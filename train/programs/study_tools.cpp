@@ -5,7 +5,7 @@
 #include "elrom/base/app.hpp"
 #include "elrom/base/error.hpp"
 #if ELROM_HAS_TORCH
-#include "elrom/torch/trainer.hpp"
+#include "late_torch.hpp"
 #endif
 #if ELROM_HAS_MPI
 #include "elrom/mpi/world.hpp"
@@ -59,7 +59,7 @@ int work_together(const StudyArguments&, const StudyWork&) {
 
 std::shared_ptr<const networks::Trainer> make_network_trainer(const std::string& device) {
 #if ELROM_HAS_TORCH
-  return elrom::torch::make_torch_trainer(device);
+  return late_torch_trainer(device);
 #else
   if (device != "cpu") {
     throw NotBuiltError({.what = "device " + device + " needs LibTorch, which this build left out",

@@ -1,7 +1,6 @@
 #include "earlier_model.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace elrom::study {
@@ -60,11 +59,6 @@ std::vector<LeftOut> EarlierModel::left_out(const std::string& field,
   const auto accuracy = Json::parse(info_.accuracy_json, nullptr, false);
   if (!accuracy.is_object() || !accuracy.contains(field)) return {};
   const auto earlier = accuracy[field].value("candidates", Json::array());
-  double best = std::numeric_limits<double>::infinity();
-  for (const auto& entry : earlier)
-    if (entry.value("weight", 0.0) > 0 && entry["nrmse"].is_number())
-      best = std::min(best, entry["nrmse"].get<double>());
-
   std::vector<LeftOut> out;
   for (const auto* method : candidates) {
     const auto* entry = entry_of(earlier, method->name());
@@ -72,7 +66,7 @@ std::vector<LeftOut> EarlierModel::left_out(const std::string& field,
     const LeftOut own{method->name(), (*entry)["nrmse"].get<double>(),
                       entry->value("cases", info_.cases.size())};
     const bool still_known = static_cast<double>(n_cases) <= growth * static_cast<double>(own.n_cases);
-    if (still_known && own.nrmse > (1 + far) * best) out.push_back(own);
+    if (still_known) out.push_back(own);
   }
   return out.size() < candidates.size() ? out : std::vector<LeftOut>();
 }

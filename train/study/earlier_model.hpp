@@ -40,15 +40,15 @@ class EarlierModel {
   /// as many by now.
   [[nodiscard]] std::vector<std::size_t> known_rows(const std::string& field, const PresentStudy& now) const;
 
-  /// Candidates of "auto" that stay out: no part of the earlier model, and their cross-validated error was
-  /// more than `far` above the winner's, with at least 1 / `growth` of the present cases.
+  /// Candidates of "auto" that stay out: no part of the earlier model, when they last competed with at least
+  /// 1 / `growth` of the present cases.
   [[nodiscard]] std::vector<LeftOut> left_out(const std::string& field,
                                               const std::vector<const methods::Method*>& candidates,
                                               std::size_t n_cases) const;
 
   /// Eight cases more than 64 took at most a quarter off a candidate's distance to the winner (0.144 to 0.108
-  /// of its error, POD + GP per mode, the shipped cases); `far` is twice what a blend must gain to be taken.
-  static constexpr double far = 0.02, growth = 1.25;
+  /// of its error, POD + GP per mode, the shipped cases), so little is missed before the next contest.
+  static constexpr double growth = 1.25;
 
  private:
   std::string digest_;

@@ -178,8 +178,9 @@ struct Study::Impl {
     std::string names;
     for (const auto& one : out) names += (names.empty() ? "" : ", ") + one.name;
     if (!out.empty())
-      log.detail(fmt::format("{}: more than {:.0f} % behind last time, so not fitted again: {}",
-                             data.info.name, 100 * EarlierModel::far, names));
+      log.detail(
+          fmt::format("{}: no part of the present model, so not fitted again before {} times its cases: {}",
+                      data.info.name, EarlierModel::growth, names));
     return out;
   }
 
