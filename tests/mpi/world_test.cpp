@@ -109,7 +109,7 @@ pid_t process_of_rank(int rank, const std::string& mark) {
 /// A job of two ranks that is hit by a signal when some builds are done, and so others are not.
 class HitJob : public World {
  protected:
-  static constexpr const char* longer = "--set fit.max_epochs=1500 --set fit.patience=1500";
+  static constexpr const char* longer = "--set fit.max_epochs=600 --set fit.patience=600";
 
   void SetUp() override {
     World::SetUp();
@@ -127,6 +127,9 @@ class HitJob : public World {
     EXPECT_NE(victim, 0) << errors();
     if (victim != 0) ::kill(victim, signal);
     job.join();
+    const auto works = [&](int one) { return process_of_rank(one, (folder / "hit").string()) != 0; };
+    while (works(0) || works(1))  // a launcher may end before what it launched
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return status;
   }
 
