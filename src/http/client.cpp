@@ -6,14 +6,12 @@
 #include "stream.hpp"
 
 namespace elrom::http {
-namespace {
-
 struct Url {
   bool secure = false;
   std::string host, port;
 };
 
-Url parse_url(const std::string& text) {
+static Url parse_url(const std::string& text) {
   Url url{.secure = text.starts_with("https://")};
   if (!url.secure && !text.starts_with("http://"))
     throw UsageError(
@@ -31,8 +29,6 @@ Url parse_url(const std::string& text) {
         Problem{.what = "no address of a server", .found = "'" + text + "'", .expected = "http://host:port"});
   return url;
 }
-
-}  // namespace
 
 struct Client::Impl {
   Url url;
