@@ -42,7 +42,7 @@ class Upload {
   void judge() const {
     const auto model = desk_.model.now();
     try {
-      desk_.options.judge_upload(file_, model ? model->bundle().mesh_digest() : "");
+      desk_.options.judge_upload(file_, model ? model->file() : std::filesystem::path());
     } catch (const InputError& error) {
       std::string reason = error.what();
       if (const auto at = reason.find(file_.string()); at != std::string::npos)
