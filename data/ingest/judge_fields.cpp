@@ -45,6 +45,14 @@ void take_cells(CfdCase& one, const model::StoredPrediction& stored) {
   }
 }
 
+/// The digest of a mesh is a word; where the cells lie says whether it is true.
+void expect_on(const field::Mesh& mesh, const CfdCase& one, const std::string& where) {
+  constexpr double room = 1e-5;  // of the furnace's size: centres are kept as float32
+  const double size = mesh.centre.cwiseAbs().maxCoeff();
+  if ((one.centre - mesh.centre).cwiseAbs().maxCoeff() <= room * size) return;
+  throw InputError({.what = "cells lie elsewhere than their mesh says", .where = where});
+}
+
 CfdCase case_of(const model::StoredPrediction& stored) {
   CfdCase one;
   take_inputs(one, stored);
@@ -65,6 +73,7 @@ void judge_physics_of(const std::filesystem::path& file, const field::Mesh& mesh
   const auto stored = model::read_prediction(file);
   if (!is_whole(stored) || stored.centre.size() != 3 * mesh.n_cells()) return;
   auto one = case_of(stored);
+  expect_on(mesh, one, file.filename().string());
   one.volume = mesh.volume;
   Checker checker;
   checker.add(view_of(one, &mesh, furnace ? &*furnace : nullptr));

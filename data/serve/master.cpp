@@ -123,13 +123,13 @@ http::Response Master::expect(const std::string& target, const std::stop_token& 
   throw InputError(Problem{.what = "the repository does not answer", .where = target, .found = answer.body});
 }
 
-Source Master::fetch(std::int64_t result, const std::stop_token& stop) {
+SourceResult Master::fetch(std::int64_t result, const std::stop_token& stop) {
   const auto document = Json::parse(expect("/results/" + std::to_string(result), stop).body);
-  Source source{.id = result,
-                .model = document["model"],
-                .version = document["version"],
-                .document = document["document"].dump(),
-                .fields = {}};
+  SourceResult source{.id = result,
+                      .model = document["model"],
+                      .version = document["version"],
+                      .document = document["document"].dump(),
+                      .fields = {}};
   if (document["fields"].is_string())
     source.fields = expect("/fields/" + document["fields"].get<std::string>(), stop).body;
   return source;

@@ -346,8 +346,8 @@ struct FaultedRuns {
   double seconds = 0;
 };
 
-/// Runs that real masters work off while they and the server are killed: each has one result, whose fields are
-/// there.
+/// Runs that real masters work off while they and the server are killed: each has one result, whose fields
+/// are there.
 FaultedRuns faulted_runs(const std::string& database, const std::string& bundle, const Options& options) {
   Place place(database, bundle);
   FaultedRuns result{.of = options.small ? 20 : 200};

@@ -24,9 +24,9 @@ struct Sent {
   [[nodiscard]] field::Mesh make_mesh() const {
     auto layers = *layers_of(one);
     layers.points = one.centre;  // a point a cell: nobody looks at corners here
-    layers.corners.resize(one.centre.rows(), 8);
-    for (Eigen::Index i = 0; i < layers.corners.rows(); ++i)
-      layers.corners.row(i).setConstant(static_cast<std::int32_t>(i));
+    layers.corners.clear();
+    for (Eigen::Index i = 0; i < one.centre.rows(); ++i)
+      layers.corners.insert(layers.corners.end(), 8, static_cast<std::int32_t>(i));
     return layers;
   }
   [[nodiscard]] std::filesystem::path write() const {
@@ -58,11 +58,12 @@ TEST(JudgeFields, ASimulationReadsBackAsACase) {
   EXPECT_EQ(read.record.inputs.values, sent.one.record.inputs.values);
   EXPECT_EQ(read.schema.names(), sent.one.schema.names());
   ASSERT_EQ(read.fields.size(), sent.one.fields.size());
-  for (std::size_t f = 0; f < read.fields.size(); ++f)
-    for (std::size_t g = 0; g < read.fields.size(); ++g)
-      if (read.fields[f].name == sent.one.fields[g].name)
-        EXPECT_EQ(read.values.row(static_cast<Eigen::Index>(f)),
-                  sent.one.values.row(static_cast<Eigen::Index>(g)));
+  for (std::size_t f = 0; f < read.fields.size(); ++f) {
+    const auto sent_as = std::ranges::find(sent.one.fields, read.fields[f].name, &field::FieldInfo::name);
+    ASSERT_NE(sent_as, sent.one.fields.end());
+    EXPECT_EQ(read.values.row(static_cast<Eigen::Index>(f)),
+              sent.one.values.row(sent_as - sent.one.fields.begin()));
+  }
 }
 
 TEST(JudgeFields, AModelDoesNotLearnFromItsPredictions) {
@@ -89,6 +90,14 @@ TEST(JudgeFields, ASoundFilePasses) {
   const Sent sent;
 
   EXPECT_NO_THROW(judge_physics_of(sent.write(), sent.mesh, sent.furnace));
+}
+
+TEST(JudgeFields, CellsThatLieElsewhereAreRefused) {
+  Sent sent;
+  const auto file = sent.write();
+  sent.mesh.centre(7, 0) += 1;
+
+  EXPECT_ERROR(InputError, "cells lie elsewhere", judge_physics_of(file, sent.mesh, sent.furnace));
 }
 
 TEST(JudgeFields, WhatPhysicsForbidsIsRefusedWithTheReason) {

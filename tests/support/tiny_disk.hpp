@@ -1,5 +1,6 @@
 #pragma once
-// A file system of its own that is soon full; gone with the object. Mounting needs rights that not everybody has.
+// A file system of its own that is soon full; gone with the object. Mounting needs rights that not
+// everybody has.
 
 #include <sys/mount.h>
 

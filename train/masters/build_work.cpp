@@ -35,7 +35,7 @@ class Build {
   }
 
  private:
-  void take_in(const serve::Source& source, const std::string& name) {
+  void take_in(const serve::SourceResult& source, const std::string& name) {
     const auto store = options_.study / settings_.store;                // which an absolute path replaces
     if (!field::SnapshotStore::open(store).find(name).empty()) return;  // by an earlier try
     const auto file = options_.folder / (name + ".hdf");

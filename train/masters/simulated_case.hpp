@@ -1,6 +1,6 @@
 #pragma once
-// A case that a simulation made, on its way from a store's reduced mesh to a file of fields, which others take
-// it out of again (ingest::read_simulation).
+// A case that a simulation made, on its way from a store's reduced mesh to a file of fields, which others
+// take it out of again (ingest::read_simulation).
 //
 // Thread rule: one thread at a time (HDF5).
 

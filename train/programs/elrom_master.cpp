@@ -1,4 +1,4 @@
-// elrom-master: the master code beside a model: ELROM's prediction, its training, or a program that is not ours.
+// elrom-master: the master code beside ELROM's prediction, its training, or a program that is not ours.
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// The work of elrom-build: takes the cases that simulations brought into the store of a study, and retrains it
-// when enough of them are new. The gate says whether the new model answers.
+// The work of elrom-build: takes the cases that simulations brought into the store of a study, and retrains
+// it when enough of them are new. The gate says whether the new model answers.
 //
 // Thread rule: one thread at a time; the study's threads are used inside.
 
@@ -23,8 +23,8 @@ struct BuildOptions {
   std::filesystem::path folder;  ///< for files on their way
 };
 
-/// A run's sources with fields are its cases; each is named by its model and inputs, and enters the store once.
-/// A case that the checks refuse ends the run as quarantined.
+/// A run's sources with fields are its cases; each is named by its model and inputs, and enters the store
+/// once. A case that the checks refuse ends the run as quarantined.
 [[nodiscard]] serve::Master::Work build_work(const BuildOptions& options, Log& log);
 
 }  // namespace elrom::masters

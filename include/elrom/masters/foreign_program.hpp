@@ -45,8 +45,8 @@ struct TemplateValues {
 
 /// Copies `from` to `to`; a file x.in becomes x with its blanks filled in: {{case}}, {{load}}, {{inputs}},
 /// {{primary_air [t/h]}}.
-/// @throws InputError for a blank that is none of these, with the nearest, for a unit of another dimension, and
-///         for the load of a scenario that does not tell it; SystemError
+/// @throws InputError for a blank that is none of these, with the nearest, for a unit of another dimension,
+///         and for the load of a scenario that does not tell it; SystemError
 void fill_templates(const std::filesystem::path& from, const std::filesystem::path& to,
                     const TemplateValues& values);
 /// The same of one text. @param where for messages
@@ -67,8 +67,9 @@ struct ForeignOptions {
   std::filesystem::path folder;  ///< one folder a run is made in it; that of a run that failed stays
 };
 
-/// The work of a foreign program. Before: inputs that no furnace can have end the run. After: its exit status (75:
-/// to be tried again), then what it left: a case goes through import's checks and is sent on the reduced mesh.
+/// The work of a foreign program. Before: inputs that no furnace can have end the run. After: its exit
+/// status (75: to be tried again), then what it left: a case goes through import's checks and is sent on
+/// the reduced mesh.
 [[nodiscard]] serve::Master::Work foreign_work(const ForeignOptions& options, Log& log);
 
 }  // namespace elrom::masters

@@ -76,8 +76,8 @@ class Transaction {
   std::optional<Run> claim(const std::string& model, const std::string& worker, double lease_s);
   /// @throws ConflictError when the lease is not (or no longer) the run's
   Run renew(Id run, const std::string& lease, double lease_s);
-  /// Models that the outcome asks for get a run that builds on the result, unless one of the same inputs waits,
-  /// runs or is done: that one then builds on it too.
+  /// Models that the outcome asks for get a run that builds on the result, unless one of the same inputs
+  /// waits, runs or is done: that one then builds on it too.
   Run give_back(Id run, const std::string& lease, const Outcome& outcome);
   [[nodiscard]] Run run(Id id);
   [[nodiscard]] std::vector<Run> runs(const RunFilter& filter, const ListPart& part);

@@ -32,7 +32,7 @@ struct MasterOptions {
 };
 
 /// A result that a run builds on.
-struct Source {
+struct SourceResult {
   std::int64_t id = 0;
   std::string model, version;
   std::string document;  ///< JSON
@@ -46,7 +46,7 @@ struct Claimed {
   std::string inputs;  ///< document: {"primary_air [kg/s]": 161.1, ...}, SI
   std::string inputs_digest = {};
   std::optional<double> load = {};  ///< fraction of full load
-  std::vector<Source> sources = {};
+  std::vector<SourceResult> sources = {};
 };
 
 /// What a model made of it. A model that cannot throws: InputError and NumericalError end the run as failed,
@@ -79,7 +79,7 @@ class Master {
   [[nodiscard]] http::Response insist(const http::Request& request, const std::stop_token& stop);
   [[nodiscard]] http::Response expect(const std::string& target, const std::stop_token& stop);
   [[nodiscard]] std::optional<Claimed> claim(const std::stop_token& stop);
-  [[nodiscard]] Source fetch(std::int64_t result, const std::stop_token& stop);
+  [[nodiscard]] SourceResult fetch(std::int64_t result, const std::stop_token& stop);
   [[nodiscard]] http::Headers headers(const std::string& media) const;
   [[nodiscard]] std::string outcome_of(const Claimed& claimed, const std::stop_token& stop);
   [[nodiscard]] std::string send_fields(const std::string& file, const std::stop_token& stop);

@@ -49,8 +49,8 @@ class Service final : public http::Handler {
   std::unique_ptr<Impl> impl_;
 };
 
-/// For ServiceOptions::judge_upload: `program --judge-fields FILE --model BUNDLE`, a process of its own, which
-/// ends with 0, or with another status and the reason in its last line. It has a minute.
+/// For ServiceOptions::judge_upload: `program --judge-fields FILE --model BUNDLE`, a process of its own,
+/// which ends with 0, or with another status and the reason in its last line. It has a minute.
 /// @throws InputError with that reason, or for a process that crashed
 void judge_in_process(const std::filesystem::path& program, const std::filesystem::path& file,
                       const std::filesystem::path& bundle);
