@@ -25,7 +25,7 @@ bool has_all_intervals(const model::BundleReader& bundle) {
 OpenModel::OpenModel(const std::filesystem::path& bundle)
     : bundle_(bundle),
       guard_(bundle_.guard()),
-      name_(bundle.filename().string()),
+      file_(bundle),
       has_intervals_(has_all_intervals(bundle_)),
       plain_(fields().size()),
       with_intervals_(has_intervals_ ? fields().size() : 0) {

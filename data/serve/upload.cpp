@@ -75,10 +75,10 @@ std::string reason_in(const std::string& said) {
 }  // namespace
 
 void judge_in_process(const std::filesystem::path& program, const std::filesystem::path& file,
-                      const std::string& mesh_digest) {
+                      const std::filesystem::path& bundle) {
   Pipe pipe;
   std::vector<std::string> command{program.string(), "--judge-fields", file.string()};
-  if (!mesh_digest.empty()) command.insert(command.end(), {"--mesh", mesh_digest});
+  if (!bundle.empty()) command.insert(command.end(), {"--model", bundle.string()});
   const pid_t process = begin(command, pipe.ends[1]);
   pipe.close_end(1);
   std::string said;

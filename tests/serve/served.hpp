@@ -34,7 +34,7 @@ class Served {
         .repository = {.folder = folder / "data"},
         .model = folder / "model.elrom",
         .page = folder / "page",
-        .judge_upload = [](const auto& file, const auto& mesh) { repository::judge_fields(file, mesh); },
+        .judge_upload = [](const auto& file, const auto& /*bundle*/) { repository::judge_fields(file, ""); },
         .anonymous = options.anonymous,
         .log =
             [this](const std::string& line) {
