@@ -17,6 +17,8 @@
 
 namespace elrom::serve {
 
+class Cuts;
+
 /// One bundle, whole in memory, each field by itself, so that who asks for one waits for one.
 class OpenModel {
  public:
@@ -25,6 +27,7 @@ class OpenModel {
 
   /// @throws InputError for a file that is no bundle of ours
   explicit OpenModel(const std::filesystem::path& bundle);
+  ~OpenModel();
 
   [[nodiscard]] const model::BundleReader& bundle() const { return bundle_; }
   [[nodiscard]] const field::InputSchema& schema() const { return bundle_.info().schema; }
@@ -33,7 +36,10 @@ class OpenModel {
   /// Values of one field: planes x columns.
   [[nodiscard]] std::size_t n_cells() const { return bundle_.n_planes() * bundle_.n_columns(); }
   [[nodiscard]] const std::string& name() const { return name_; }  ///< of the file: "3.elrom"
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] bool has_intervals() const { return has_intervals_; }
+  /// Read of the mesh when it is first asked for. @throws InputError for a broken mesh
+  [[nodiscard]] const Cuts& cuts() const;
 
   struct Values {
     base::LargeArray<float> values, half_width;  ///< (i_fields, n_cells), SI; the second may be empty
@@ -46,6 +52,7 @@ class OpenModel {
  private:
   model::BundleReader bundle_;
   model::Guard guard_;
+  std::filesystem::path file_;
   std::string name_;
   bool has_intervals_;
   std::vector<std::unique_ptr<model::Predictor>> plain_, with_intervals_;  //!< one a field
@@ -54,6 +61,8 @@ class OpenModel {
   [[nodiscard]] Scratch take_scratch() const;
   mutable std::mutex mutex_;
   mutable std::vector<Scratch> scratch_;  //!< of no field now
+  mutable std::once_flag cuts_once_;
+  mutable std::unique_ptr<const Cuts> cuts_;
 };
 
 class ResidentModel {
