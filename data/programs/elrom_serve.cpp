@@ -21,7 +21,7 @@ namespace elrom::programs {
 namespace {
 
 struct ServeOptions {
-  std::filesystem::path data, model, page, certificate, key, judged, backup, restored;
+  std::filesystem::path data, model, page, openfoam_case, certificate, key, judged, backup, restored;
   std::string database = "sqlite", address = "127.0.0.1", new_token, anonymous;
   int port = 8080;
   http::Limits limits;
@@ -67,12 +67,22 @@ int judge(const ServeOptions& options) {
   return 0;
 }
 
+/// Beside the program where it is installed, or where it was built.
+std::filesystem::path found_page(const std::filesystem::path& prefix) {
+  for (const char* place : {"share/elrom/page", "page"})
+    if (std::filesystem::exists(prefix / place / "index.html")) return prefix / place;
+  return {};
+}
+
 serve::ServiceOptions service_options(const ServeOptions& options) {
   const auto program = std::filesystem::read_symlink("/proc/self/exe");
+  const auto predict = program.parent_path() / "elrom-predict";
   serve::ServiceOptions service{
       .repository = repository_options(options),
       .model = options.model.empty() ? options.data / "study" : options.model,
-      .page = options.page,
+      .page = options.page.empty() ? found_page(program.parent_path().parent_path()) : options.page,
+      .predict_program = std::filesystem::exists(predict) ? predict : "",
+      .openfoam_case = options.openfoam_case,
       .judge_upload = [program](const std::filesystem::path& file, const std::filesystem::path& bundle) {
         serve::judge_in_process(program, file, bundle);
       }};
@@ -144,7 +154,10 @@ int run(int argc, char** argv) {
   app.add_option("--model", options.model,
                  "Bundle, or study whose current model answers [default: DIR/study]")
       ->type_name("PATH");
-  app.add_option("--page", options.page, "Folder of a page's files")->type_name("DIR");
+  app.add_option("--page", options.page, "Folder of a page's files [default: ours, where it was built]")
+      ->type_name("DIR");
+  app.add_option("--openfoam-case", options.openfoam_case, "OpenFOAM case that downloads of starts are for")
+      ->type_name("DIR");
   app.add_option("--certificate", options.certificate, "TLS certificate, PEM; with --key")->type_name("FILE");
   app.add_option("--key", options.key, "Its key, PEM")->type_name("FILE");
   app.add_option("--make-token", options.new_token,

@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstring>
 
 #include "desk.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/base/text.hpp"
 #include "elrom/field/user_unit.hpp"
 #include "elrom/repository/rules.hpp"
 #include "prediction_answer.hpp"
@@ -13,15 +16,17 @@ namespace {
 
 using repository::Role;
 
-std::shared_ptr<const OpenModel> open_model(Desk& desk) {
-  auto model = desk.model.now();
-  if (model) return model;
-  throw repository::NotFoundError(Problem{.what = "no model yet",
-                                          .where = desk.options.model.string(),
-                                          .advice = "train one with elrom-train run"});
+/// Where an input enters the furnace, as far as its description tells.
+Json opening_of(const std::optional<field::Furnace>& furnace, const std::string& input) {
+  if (!furnace) return nullptr;
+  const auto found = std::ranges::find_if(
+      furnace->openings, [&](const field::Opening& opening) { return base::matches(input, opening.inputs); });
+  if (found == furnace->openings.end()) return nullptr;
+  return {{"kind", found->kind}, {"low_m", found->low_m}, {"high_m", found->high_m}};
 }
 
 Json inputs_of(const OpenModel& model) {
+  const auto furnace = model.bundle().furnace();
   Json all = Json::array();
   for (std::size_t i = 0; i < model.schema().size(); ++i) {
     const auto& info = model.schema()[i];
@@ -33,7 +38,8 @@ Json inputs_of(const OpenModel& model) {
                    {"high", high},
                    {"display_unit", unit.symbol},
                    {"display_low", unit.from_si(low)},
-                   {"display_high", unit.from_si(high)}});
+                   {"display_high", unit.from_si(high)},
+                   {"opening", opening_of(furnace, info.name)}});
   }
   return all;
 }
@@ -45,8 +51,13 @@ Json fields_of(const OpenModel& model) {
   return all;
 }
 
+Json extent_of(const Cuts& cuts) {
+  return {{"low", cuts.low()}, {"high", cuts.high()}, {"heights", cuts.heights()}};
+}
+
 http::Response about_model(Desk& desk, const Ask& ask) {
   const auto model = open_model(desk);
+  const auto furnace = model->bundle().furnace();
   const auto& bundle = model->bundle();
   return tagged_response(ask,
                          {{"name", model->name()},
@@ -57,12 +68,62 @@ http::Response about_model(Desk& desk, const Ask& ask) {
                           {"planes", bundle.n_planes()},
                           {"columns", bundle.n_columns()},
                           {"mesh_digest", bundle.mesh_digest()},
+                          {"furnace", furnace ? Json(furnace->name) : Json()},
+                          {"extent", extent_of(model->cuts())},
                           {"level", model->has_intervals() ? Json(OpenModel::level) : Json()},
                           {"inputs", inputs_of(*model)},
                           {"fields", fields_of(*model)},
+                          {"files", file_formats(desk)},
                           {"provenance", bundle.info().provenance},
                           {"accuracy", Json::parse(bundle.info().accuracy_json)}},
                          "\"" + bundle.digest() + "\"");
+}
+
+http::Response cases(Desk& desk, const Ask& ask) {
+  const auto model = open_model(desk);
+  const auto& guard = model->guard();
+  Json names = Json::array(), items = Json::array();
+  for (const auto& info : model->schema().inputs()) names.push_back(info.name + " [" + info.unit + "]");
+  for (std::size_t i = 0; i < guard.names().size(); ++i) {
+    const auto row = guard.inputs().row(static_cast<Eigen::Index>(i));
+    items.push_back({{"name", guard.names()[i]},
+                     {"load", std::isfinite(guard.loads()[i]) ? Json(guard.loads()[i]) : Json()},
+                     {"values", std::vector<double>(row.begin(), row.end())}});
+  }
+  return tagged_response(ask, {{"inputs", names}, {"items", items}}, "\"" + model->bundle().digest() + "\"");
+}
+
+/// @throws Fault for what is no axis, no number or nowhere in the mesh
+template <class Fault>
+Cut cut_of(const Cuts& cuts, const std::string& axis, double at, const std::string& where) {
+  constexpr std::string_view axes = "xyz";
+  const auto i_axis = axis.size() == 1 ? axes.find(axis[0]) : std::string_view::npos;
+  if (i_axis == std::string_view::npos)
+    throw Fault(
+        Problem{.what = "no axis", .where = where, .found = "'" + axis + "'", .expected = "x, y or z"});
+  const Cut cut{.axis = i_axis, .at = at};
+  if (cuts.meets(cut)) return cut;
+  throw Fault(Problem{
+      .what = "the cut misses the furnace",
+      .where = where,
+      .found = axis + " = " + base::rounded(at) + " m",
+      .expected = base::rounded(cuts.low()[i_axis]) + " to " + base::rounded(cuts.high()[i_axis]) + " m"});
+}
+
+http::Response cut(Desk& desk, const Ask& ask) {
+  const auto model = open_model(desk);
+  const auto text = ask.target.value("at").value_or("");
+  double at = std::nan("");
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), at);
+  if (fault != std::errc{} || end != text.data() + text.size() || !std::isfinite(at))
+    throw UsageError(
+        Problem{.what = "wrong at", .where = "query", .found = "'" + text + "'", .expected = "a place [m]"});
+  const auto wanted = cut_of<UsageError>(model->cuts(), ask.target.value("axis").value_or(""), at, "query");
+  const auto tag = "\"" + model->bundle().mesh_digest() + "\"";
+  const auto* has = ask.request.header("If-None-Match");
+  if (has != nullptr && *has == tag) return {.status = 304, .headers = {{"ETag", tag}}};
+  return {.headers = {{"Content-Type", "application/octet-stream"}, {"ETag", tag}},
+          .body = polygons_answer(wanted, model->cuts().polygons(wanted))};
 }
 
 http::Response mesh(Desk& desk, const Ask& ask) {
@@ -106,6 +167,40 @@ const Media* accepted(const Ask& ask) {
   return nullptr;
 }
 
+/// "cuts" and "profile" of a request; with neither, all cells are meant.
+Excerpt excerpt_in(const JsonBody& body, const OpenModel& model) {
+  constexpr std::size_t most = 32;
+  Excerpt excerpt{.cuts = {}, .profile = body.flag_or("profile", false)};
+  if (!body.has("cuts")) return excerpt;
+  const auto& wanted = body.at("cuts");
+  if (!wanted.is_array() || wanted.size() > most)
+    throw InputError(Problem{.what = "wrong cuts", .where = "request", .expected = "a list of at most 32"});
+  for (const auto& one : wanted) {
+    const JsonBody cut(one.dump(), {"axis", "at"}, "cuts");
+    excerpt.cuts.push_back(cut_of<InputError>(model.cuts(), cut.text("axis"), cut.number("at"), "cuts"));
+  }
+  return excerpt;
+}
+
+http::Response answer_in(Form form, const Predicted& predicted, Desk& desk) {
+  http::Response response{.headers = {{"Cache-Control", "no-store"}}};
+  switch (form) {
+    case Form::json:
+      response.body = json_answer(predicted);
+      break;
+    case Form::binary:
+      response.body = binary_answer(predicted);
+      break;
+    case Form::hdf:
+      if (predicted.parts != nullptr)
+        throw InputError(Problem{.what = "a file of fields holds all cells",
+                                 .expected = "no cuts and no profile, or another form of the answer"});
+      response.body = hdf_answer(predicted, desk.hdf5, desk.options.repository.folder / "outgoing");
+      break;
+  }
+  return response;
+}
+
 http::Response predict(Desk& desk, const Ask& ask) {
   const auto model = open_model(desk);  // held to the end, whatever `current` does meanwhile
   const auto* media = accepted(ask);
@@ -115,26 +210,23 @@ http::Response predict(Desk& desk, const Ask& ask) {
                              .where = "Accept",
                              .found = *ask.request.header("Accept"),
                              .expected = "application/json, application/octet-stream or application/x-hdf5"});
-  const JsonBody body(ask.request.body, {"case", "load", "inputs", "fields", "intervals"});
-  Json one{{"case", body.text_or("case", "case")}, {"inputs", body.at("inputs")}};
-  if (body.has("load")) one["load"] = body.number("load");
-  const auto judged = repository::judge_inputs(one.dump(), "request", &model->schema(), &model->guard());
+  const JsonBody body(ask.request.body, {"case", "load", "inputs", "fields", "intervals", "cuts", "profile"});
+  const auto judged = judge_case(body, *model);
   const auto i_fields = chosen_fields(*model, body.texts("fields"));
-  const auto values = model->predict(judged.inputs.values, i_fields, body.flag_or("intervals", true),
-                                     base::available_threads());
-  const Predicted predicted{*model, judged.inputs, *judged.assessment, i_fields, values};
-  http::Response response{.headers = {{"Content-Type", media->type}, {"Cache-Control", "no-store"}}};
-  switch (media->form) {
-    case Form::json:
-      response.body = json_answer(predicted);
-      break;
-    case Form::binary:
-      response.body = binary_answer(predicted);
-      break;
-    case Form::hdf:
-      response.body = hdf_answer(predicted, desk.hdf5, desk.options.repository.folder / "outgoing");
-      break;
+  const auto excerpt = excerpt_in(body, *model);
+  auto values = model->predict(judged.inputs.values, i_fields, body.flag_or("intervals", true),
+                               base::available_threads());
+  std::optional<ExcerptParts> parts;
+  if (!excerpt.everything()) {
+    parts.emplace(model->cuts(), excerpt);
+    values.values = parts->of(values.values, model->n_cells());
+    values.half_width = parts->of(values.half_width, model->n_cells());
   }
+  auto response = answer_in(
+      media->form,
+      {*model, judged.inputs, *judged.assessment, i_fields, values, excerpt, parts ? &*parts : nullptr},
+      desk);
+  response.headers.emplace_back("Content-Type", media->type);
   return response;
 }
 
@@ -158,15 +250,37 @@ std::vector<Route> model_routes() {
        .answer = mesh,
        .media = {"application/octet-stream"},
        .tagged = true},
+      {.method = "GET",
+       .path = "/model/cases",
+       .role = Role::reader,
+       .summary = "The cases that it was trained on: loads and inputs, SI",
+       .answers = {{200, "all of them"}, {404, "there is no model yet"}},
+       .answer = cases,
+       .tagged = true},
+      {.method = "GET",
+       .path = "/mesh/cut",
+       .role = Role::reader,
+       .summary = "The polygons of the cells that a plane cut goes through",
+       .answers =
+           {{200,
+             "a JSON header and the numbers, as POST /predictions answers with application/octet-stream"},
+            {400, "no such cut"},
+            {404, "there is no model yet"}},
+       .answer = cut,
+       .query = {{"axis", "x, y or z"}, {"at", "where on it [m]"}},
+       .media = {"application/octet-stream"},
+       .tagged = true},
       {.method = "POST",
        .path = "/predictions",
        .role = Role::reader,
        .summary =
-           "Fields of an operating point, with intervals and what the guard says; nothing is kept of it",
+           "Fields of an operating point, with intervals and what the guard says; of all cells, or of `cuts` and "
+           "plane averages (`profile`); nothing is kept of it",
        .answers = {{200, "the fields"}, {404, "there is no model yet"}, {406, "no such form of an answer"}},
        .answer = predict,
        .body = BodyKind::json,
-       .example = R"({"case": "a", "load": 1.0, "inputs": {}, "fields": ["pressure"], "intervals": true})",
+       .example =
+           R"({"case": "a", "load": 1.0, "inputs": {}, "fields": ["pressure"], "intervals": true, "cuts": [{"axis": "z", "at": 1.0}], "profile": true})",
        .wrong = R"({"inputs": {"nothing of a furnace": 1}})",
        .required = {"inputs"},
        .media = {"application/json", "application/octet-stream", "application/x-hdf5"}}};

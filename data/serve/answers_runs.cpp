@@ -53,6 +53,7 @@ http::Response add(Desk& desk, const Ask& ask) {
 http::Response list(Desk& desk, const Ask& ask) {
   const auto part = part_of(ask);
   RunFilter filter{.model = ask.target.value("model").value_or("")};
+  if (const auto scenario = ask.target.value("scenario")) filter.scenario = number_in(*scenario, "scenario");
   if (const auto state = ask.target.value("state"))
     filter.state = repository::run_states.value<UsageError>(*state);
   Json items;
@@ -150,6 +151,7 @@ std::vector<Route> run_routes() {
        .answers = {{200, "a part of the list"}, {400, "a query that is none"}},
        .answer = list,
        .query = {{"model", "Of this model"},
+                 {"scenario", "Of this scenario"},
                  {"state", "In this state: waiting, running, done, failed, quarantined"},
                  {"after", "The number of the last one that you have"},
                  {"limit", "How many, up to 1000 [default: 100]"}}},

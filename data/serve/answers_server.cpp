@@ -30,6 +30,10 @@ http::Response metrics(Desk& desk, const Ask& /*ask*/) {
   return {.headers = {{"Content-Type", "text/plain; version=0.0.4"}}, .body = desk.metrics.text(gauges)};
 }
 
+http::Response caller(Desk& /*desk*/, const Ask& ask) {
+  return json_response({{"name", ask.caller.name}, {"role", repository::roles.name(ask.caller.role)}});
+}
+
 http::Response list_tokens(Desk& desk, const Ask& /*ask*/) {
   Json items;
   desk.repository.read([&](Transaction& transaction) {
@@ -76,6 +80,12 @@ std::vector<Route> server_routes() {
            .answers = {{200, "text format 0.0.4"}},
            .answer = metrics,
            .media = {"text/plain"}},
+          {.method = "GET",
+           .path = "/caller",
+           .role = Role::reader,
+           .summary = "Whose token it is, and what he may do",
+           .answers = {{200, "name and role"}},
+           .answer = caller},
           {.method = "GET",
            .path = "/tokens",
            .role = Role::admin,

@@ -43,6 +43,20 @@ Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json
 
 }  // namespace
 
+std::shared_ptr<const OpenModel> open_model(Desk& desk) {
+  auto model = desk.model.now();
+  if (model) return model;
+  throw repository::NotFoundError(Problem{.what = "no model yet",
+                                          .where = desk.options.model.string(),
+                                          .advice = "train one with elrom-train run"});
+}
+
+repository::JudgedInputs judge_case(const JsonBody& body, const OpenModel& model) {
+  Json one{{"case", body.text_or("case", "case")}, {"inputs", body.at("inputs")}};
+  if (body.has("load")) one["load"] = body.number("load");
+  return repository::judge_inputs(one.dump(), "request", &model.schema(), &model.guard());
+}
+
 http::Response json_response(const Json& document, int status) {
   return {
       .status = status, .headers = {{"Content-Type", "application/json"}}, .body = document.dump() + "\n"};
@@ -69,17 +83,20 @@ repository::Id id_of(const Ask& ask, std::size_t i) {
   throw repository::NotFoundError(Problem{.what = "no number", .found = "'" + ask.parameters[i] + "'"});
 }
 
+std::int64_t number_in(const std::string& text, const std::string& name, std::int64_t most) {
+  const auto value = number_in(text);
+  if (value && *value <= most) return *value;
+  throw UsageError(Problem{.what = "wrong " + name,
+                           .where = "query",
+                           .found = "'" + text + "'",
+                           .expected = "0 to " + std::to_string(most)});
+}
+
 repository::ListPart part_of(const Ask& ask) {
   repository::ListPart part;
   const auto read = [&](const char* name, std::int64_t otherwise, std::int64_t most) {
     const auto text = ask.target.value(name);
-    if (!text) return otherwise;
-    const auto value = number_in(*text);
-    if (value && *value <= most) return *value;
-    throw UsageError(Problem{.what = std::string("wrong ") + name,
-                             .where = "query",
-                             .found = "'" + *text + "'",
-                             .expected = "0 to " + std::to_string(most)});
+    return text ? number_in(*text, name, most) : otherwise;
   };
   constexpr std::int64_t longest = 1000;
   part.after = read("after", 0, std::numeric_limits<std::int64_t>::max());

@@ -1,8 +1,10 @@
 #pragma once
 // What an answer is made of.
 
+#include <memory>
 #include <mutex>
 
+#include "elrom/repository/rules.hpp"
 #include "elrom/serve/service.hpp"
 #include "json_body.hpp"
 #include "metrics.hpp"
@@ -32,10 +34,20 @@ struct Desk {
 
 /// Of a path's {id}. @throws NotFoundError for what is no number
 [[nodiscard]] repository::Id id_of(const Ask& ask, std::size_t i = 0);
+/// Of a query. @throws UsageError for what is no number from 0 to `most`
+[[nodiscard]] std::int64_t number_in(const std::string& text, const std::string& name,
+                                     std::int64_t most = std::numeric_limits<std::int64_t>::max());
 /// ?after=&limit=. @throws UsageError
 [[nodiscard]] repository::ListPart part_of(const Ask& ask);
 /// {"items": [...], "next": ...}: `next` is what to give as `after`, null at the end.
 [[nodiscard]] Json list_document(Json items, const repository::ListPart& part);
+
+/// The model that answers now. @throws NotFoundError
+[[nodiscard]] std::shared_ptr<const OpenModel> open_model(Desk& desk);
+/// A body's "case", "load" and "inputs". @throws InputError
+[[nodiscard]] repository::JudgedInputs judge_case(const JsonBody& body, const OpenModel& model);
+/// What elrom-predict can write here: "hdf", "csv" ...; openfoam only onto a case.
+[[nodiscard]] std::vector<std::string> file_formats(const Desk& desk);
 
 // Records as documents.
 [[nodiscard]] Json document_of(const repository::Scenario& scenario);
@@ -50,5 +62,7 @@ struct Desk {
 [[nodiscard]] std::vector<Route> run_routes();       // answers_runs.cpp
 [[nodiscard]] std::vector<Route> field_routes();     // answers_fields.cpp
 [[nodiscard]] std::vector<Route> model_routes();     // answers_model.cpp
+[[nodiscard]] std::vector<Route> version_routes();   // answers_versions.cpp
+[[nodiscard]] std::vector<Route> file_routes();      // answers_files.cpp: what elrom-predict writes
 
 }  // namespace elrom::serve

@@ -1,5 +1,6 @@
 #include "prediction_answer.hpp"
 
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cstring>
@@ -13,26 +14,66 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
+constexpr std::array axes{"x", "y", "z"};
+
+Json parts_of(const Predicted& predicted) {
+  Json all = Json::array();
+  const auto& begins = predicted.parts->begins();
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    const bool is_cut = i < predicted.excerpt.cuts.size();
+    Json one;
+    if (is_cut)
+      one = {{"axis", axes[predicted.excerpt.cuts[i].axis]}, {"at", predicted.excerpt.cuts[i].at}};
+    else
+      one = {{"profile", true}};
+    one["places"] = {begins[i], begins[i + 1]};
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 Json head_of(const Predicted& predicted) {
-  const auto& [model, inputs, assessment, i_fields, values] = predicted;
+  const auto& model = predicted.model;
+  const auto& assessment = predicted.assessment;
   Json nearest = Json::array();
   for (const auto& one : assessment.nearest)
     nearest.push_back({{"case", one.name}, {"load", one.load}, {"distance", one.distance}});
-  return {{"case", inputs.name},
-          {"model", {{"name", model.name()}, {"digest", model.bundle().digest()}}},
-          {"verdict", model::name_of(assessment.verdict)},
-          {"reason", assessment.reason},
-          {"out_of_range", assessment.out_of_range},
-          {"unusual", assessment.unusual},
-          {"distance", assessment.distance},
-          {"nearest", nearest},
-          {"planes", model.bundle().n_planes()},
-          {"columns", model.bundle().n_columns()},
-          {"level", values.half_width.empty() ? Json() : Json(OpenModel::level)}};
+  Json head{{"case", predicted.inputs.name},
+            {"model", {{"name", model.name()}, {"digest", model.bundle().digest()}}},
+            {"verdict", model::name_of(assessment.verdict)},
+            {"reason", assessment.reason},
+            {"out_of_range", assessment.out_of_range},
+            {"unusual", assessment.unusual},
+            {"distance", assessment.distance},
+            {"nearest", nearest},
+            {"planes", model.bundle().n_planes()},
+            {"columns", model.bundle().n_columns()},
+            {"level", predicted.values.half_width.empty() ? Json() : Json(OpenModel::level)}};
+  if (predicted.parts != nullptr) head["parts"] = parts_of(predicted);
+  return head;
 }
 
 std::span<const float> part(const base::LargeArray<float>& all, std::size_t i, std::size_t n) {
   return std::span(all).subspan(i * n, n);
+}
+
+/// A header, and what it speaks of behind it.
+std::string framed(const Json& head, std::initializer_list<std::span<const std::byte>> blocks) {
+  auto header = head.dump();
+  header.resize((header.size() + 7) / 8 * 8, ' ');
+  const std::uint64_t length = header.size();
+  std::size_t size = sizeof length + header.size();
+  for (const auto& block : blocks) size += block.size();
+  std::string text(size, '\0');
+  char* at = text.data();
+  const auto put = [&](const void* bytes, std::size_t n) {
+    if (n > 0) std::memcpy(at, bytes, n);
+    at += n;
+  };
+  put(&length, sizeof length);
+  put(header.data(), header.size());
+  for (const auto& block : blocks) put(block.data(), block.size());
+  return text;
 }
 
 void append_numbers(std::string& text, std::span<const float> values) {
@@ -53,7 +94,7 @@ void append_numbers(std::string& text, std::span<const float> values) {
 }  // namespace
 
 std::string json_answer(const Predicted& predicted) {
-  const auto n = predicted.model.n_cells();
+  const auto n = predicted.n_values();
   auto text = head_of(predicted).dump();
   text.pop_back();
   text += ",\"fields\":{";
@@ -72,7 +113,7 @@ std::string json_answer(const Predicted& predicted) {
 }
 
 std::string binary_answer(const Predicted& predicted) {
-  const auto n = predicted.model.n_cells();
+  const auto n = predicted.n_values();
   const auto n_values = predicted.values.values.size();
   auto head = head_of(predicted);
   for (std::size_t i = 0; i < predicted.i_fields.size(); ++i) {
@@ -81,23 +122,20 @@ std::string binary_answer(const Predicted& predicted) {
     if (!predicted.values.half_width.empty()) one["half_width"] = {n_values + i * n, n_values + (i + 1) * n};
     head["fields"][info.name] = one;
   }
-  auto header = head.dump();
-  header.resize((header.size() + 7) / 8 * 8, ' ');
-  const std::uint64_t length = header.size();
-  const auto bytes_of = [](const base::LargeArray<float>& values) { return values.size() * sizeof(float); };
-  std::string text(
-      sizeof length + length + bytes_of(predicted.values.values) + bytes_of(predicted.values.half_width),
-      '\0');
-  char* at = text.data();
-  const auto put = [&](const void* bytes, std::size_t size) {
-    if (size > 0) std::memcpy(at, bytes, size);
-    at += size;
-  };
-  put(&length, sizeof length);
-  put(header.data(), header.size());
-  put(predicted.values.values.data(), bytes_of(predicted.values.values));
-  put(predicted.values.half_width.data(), bytes_of(predicted.values.half_width));
-  return text;
+  return framed(head, {std::as_bytes(std::span(predicted.values.values)),
+                       std::as_bytes(std::span(predicted.values.half_width))});
+}
+
+std::string polygons_answer(const Cut& cut, const CutPolygons& polygons) {
+  const auto cells = polygons.cells.size(), offsets = cells + polygons.offsets.size(),
+             points = offsets + polygons.points.size();
+  return framed({{"axis", axes[cut.axis]},
+                 {"at", cut.at},
+                 {"cells", {0, cells}},
+                 {"offsets", {cells, offsets}},
+                 {"points", {offsets, points}}},
+                {std::as_bytes(std::span(polygons.cells)), std::as_bytes(std::span(polygons.offsets)),
+                 std::as_bytes(std::span(polygons.points))});
 }
 
 std::string hdf_answer(const Predicted& predicted, std::mutex& hdf5, const std::filesystem::path& folder) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cuts.hpp"
 #include "elrom/base/parallel.hpp"
 
 namespace elrom::serve {
@@ -35,6 +36,13 @@ OpenModel::OpenModel(const std::filesystem::path& bundle)
       with_intervals_[i] = std::make_unique<model::Predictor>(
           bundle, model::Selection{.fields = {fields()[i].name}, .interval_level = level});
   });
+}
+
+OpenModel::~OpenModel() = default;
+
+const Cuts& OpenModel::cuts() const {
+  std::call_once(cuts_once_, [&] { cuts_ = std::make_unique<const Cuts>(bundle_.mesh()); });
+  return *cuts_;
 }
 
 OpenModel::Scratch OpenModel::take_scratch() const {

@@ -1,6 +1,7 @@
 // The OpenAPI document as a caller reads it, and the server held to it: every path, every documented status.
 #include <set>
 
+#include "elrom/base/atomic_file.hpp"
 #include "elrom/base/digest.hpp"
 #include "served.hpp"
 
@@ -116,6 +117,8 @@ class Operation {
     if (path_.starts_with("/runs")) fill("{id}", run["id"].dump());
     if (path_.starts_with("/results")) fill("{id}", made_result(run));
     if (path_.starts_with("/quarantine")) fill("{id}", made_quarantine());
+    if (path_.starts_with("/models")) fill("{id}", "1");
+    if (path_ == "/mesh/cut") path_now_ += "?axis=x&at=5.3";
     if (path_.starts_with("/tokens"))
       fill("{name}", method_ == "DELETE" ? made_token() : "new" + std::to_string(n_));
     if (path_.starts_with("/fields"))
@@ -219,6 +222,10 @@ class Operation {
   }
   /// The same key for something else; where there is none, what cannot be twice.
   http::Response conflict() {
+    if (path_ == "/models/current") {
+      const base::FileLock at_work(served_.folder / ".lock");
+      return send();
+    }
     (void)send();
     if (!asks_for("Idempotency-Key")) {
       if (path_.ends_with("/lease")) return with_body(R"({"lease": "wrong", "lease_s": 60})");

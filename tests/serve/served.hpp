@@ -1,5 +1,5 @@
 #pragma once
-// A service that answers on a port of its own, with a small model and a token of each role.
+// A service that answers on a port of its own, with a small study and a token of each role.
 
 #include <gmock/gmock.h>
 
@@ -14,6 +14,7 @@
 #include "elrom/http/server.hpp"
 #include "elrom/repository/rules.hpp"
 #include "elrom/serve/service.hpp"
+#include "elrom/study/versions.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -29,11 +30,15 @@ struct ServedOptions {
 class Served {
  public:
   explicit Served(const ServedOptions& options = {}) {
-    if (options.with_model) test::sample_bundle({}).write(folder / "model.elrom");
+    if (options.with_model) {
+      test::sample_bundle({}).write(folder / "model.elrom");
+      study::Versions(folder.path()).settle();
+    }
     service = std::make_unique<Service>(ServiceOptions{
         .repository = {.folder = folder / "data"},
-        .model = folder / "model.elrom",
+        .model = folder.path(),
         .page = folder / "page",
+        .predict_program = ELROM_BIN_DIR "/elrom-predict",
         .judge_upload = [](const auto& file, const auto& /*bundle*/) { repository::judge_fields(file, ""); },
         .anonymous = options.anonymous,
         .log =

@@ -179,6 +179,108 @@ TEST(Service, APredictionHasTheSameBitsInEveryForm) {
   EXPECT_EQ(binary.size(), sizeof length + length + 4 * values.size() * sizeof(float));
 }
 
+TEST(Service, PartsOfAPredictionHaveTheBitsOfAllCells) {
+  Served served;
+  const Json whole{{"inputs", Served::inputs()}, {"fields", {"pressure"}}};
+  auto parts = whole;
+  parts["cuts"] = {{{"axis", "x"}, {"at", 5.0}}, {{"axis", "z"}, {"at", 20.0}}};
+  parts["profile"] = true;
+  const auto polygons = served.call("GET", "/mesh/cut?axis=x&at=5").body;
+  std::uint64_t length = 0;
+  std::memcpy(&length, polygons.data(), sizeof length);
+  const std::size_t n = Json::parse(polygons.substr(sizeof length, length))["cells"][1];
+  std::vector<std::int32_t> cells(n);
+  std::memcpy(cells.data(), polygons.data() + sizeof length + length, n * sizeof cells[0]);
+
+  const auto all = json_of(served.call("POST", "/predictions", whole.dump()));
+  const auto some = json_of(served.call("POST", "/predictions", parts.dump()));
+
+  ASSERT_EQ(some["parts"].size(), 3U);
+  EXPECT_EQ(some["parts"][0]["places"], Json({0, 15}));  // 3 rows of columns in 5 planes
+  EXPECT_EQ(some["parts"][1]["places"], Json({15, 27}));
+  EXPECT_EQ(some["parts"][2], Json({{"profile", true}, {"places", {27, 32}}}));
+  for (const char* kind : {"values", "half_width"})
+    for (std::size_t i = 0; i < n; ++i)
+      EXPECT_EQ(some["fields"]["pressure"][kind][i],
+                all["fields"]["pressure"][kind][static_cast<std::size_t>(cells[i])]);
+}
+
+TEST(Service, ACutThatMissesTheFurnaceIsToldWhereItLies) {
+  Served served;
+  auto request = Json{{"inputs", Served::inputs()}, {"cuts", {{{"axis", "z"}, {"at", 47.5}}}}};
+
+  const auto answer = served.call("POST", "/predictions", request.dump());
+
+  EXPECT_EQ(answer.status, 422);
+  EXPECT_EQ(json_of(answer)["expected"], "0 to 47 m");
+  EXPECT_EQ(served.call("GET", "/mesh/cut?axis=w&at=1").status, 400);
+}
+
+TEST(Service, FilesAreThoseOfElromPredict) {
+  Served served;
+  const auto ask = [&](const char* format) {
+    return served.call("POST", "/predictions/file",
+                       Json{{"inputs", Served::inputs()}, {"format", format}, {"intervals", false}}.dump());
+  };
+  const auto expected = expected_values(served, "pressure");
+
+  test::write_bytes(served.folder / "a.hdf", ask("hdf").body);
+  const auto csv = ask("csv");
+
+  EXPECT_EQ(model::read_prediction(served.folder / "a.hdf").field("pressure").values, expected);
+  EXPECT_THAT(csv.body, ::testing::StartsWith("plane,column,x [m],y [m],z [m],solid_velocity_x [m/s]"));
+  EXPECT_EQ(*csv.header("Content-Disposition"), "attachment; filename=\"prediction.csv\"");
+  EXPECT_EQ(ask("openfoam").status, 422);  // no case to start was given
+  EXPECT_TRUE(std::filesystem::is_empty(served.folder / "data/outgoing"));
+}
+
+TEST(Service, TheTrainingCasesTellWhatGoesWithALoad) {
+  Served served;
+
+  const auto cases = json_of(served.call("GET", "/model/cases"));
+
+  EXPECT_EQ(cases["inputs"][0], "flow_0 [kg/s]");
+  ASSERT_EQ(cases["items"].size(), 12U);
+  EXPECT_EQ(cases["items"][0]["load"], 0.4);
+  EXPECT_EQ(cases["items"][0]["values"].size(), 4U);
+}
+
+TEST(Service, AVersionIsPromotedByAnAdminAndAnswersAtOnce) {
+  Served served;
+  const auto first = json_of(served.call("GET", "/model"))["digest"];
+  test::sample_bundle({}, 2).write(served.folder / "models/2.elrom");
+
+  const auto versions = json_of(served.call("GET", "/models"))["items"];
+  const auto promoted = served.call("PUT", "/models/current", R"({"number": 2})");
+
+  EXPECT_EQ(versions[0]["answers"], true);
+  EXPECT_EQ(versions[1]["answers"], false);
+  EXPECT_EQ(promoted.status, 200);
+  EXPECT_EQ(json_of(promoted)["answers"], true);
+  EXPECT_NE(json_of(served.call("GET", "/model"))["digest"], first);
+  EXPECT_EQ(json_of(served.call("GET", "/models/1"))["answers"], false);
+}
+
+TEST(Service, ACallerIsToldWhatHeMayDo) {
+  Served served;
+
+  const auto caller = json_of(served.call("GET", "/caller"));
+
+  EXPECT_EQ(caller, Json({{"name", "admin"}, {"role", "admin"}}));
+}
+
+TEST(Service, RunsAreListedByScenario) {
+  Served served;
+  for (const char* name : {"a", "b"}) served.call("POST", "/scenarios", Served::scenario(name));
+  for (const char* run : {R"({"scenario": 1, "model": "m"})", R"({"scenario": 2, "model": "m"})"})
+    served.call("POST", "/runs", run);
+
+  const auto runs = json_of(served.call("GET", "/runs?scenario=2"))["items"];
+
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_EQ(runs[0]["scenario"], 2);
+}
+
 TEST(Service, APredictionSaysWhatTheGuardThinks) {
   Served served;
   auto inputs = Served::inputs();

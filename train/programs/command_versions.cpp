@@ -83,37 +83,33 @@ void expect_study(const path& folder) {
     throw InputError({.what = "no such folder", .where = folder.string(), .expected = "a study"});
 }
 
-study::Versions open_to_change(const path& folder) {
-  study::Versions versions(folder);
+void expect_versions(const path& folder, const study::Versions& versions) {
   if (versions.has_lost_its_log()) make_console_log()->warning(versions.lost_log_sentence());
-  versions.settle();
-  if (!versions.current())
+  if (!versions.current() && !std::filesystem::exists(folder / "model.elrom"))
     throw InputError({.what = "no versions of a model",
                       .where = folder.string(),
                       .advice = "run: elrom-train run " + folder.string()});
-  return versions;
 }
 
 int promote(const path& folder, int number, const std::string& date) {
-  const base::FileLock lock(folder / ".lock");
-  auto versions = open_to_change(folder);
-  const model::BundleReader bundle(versions.known(number));
-  bundle.file().verify_all();
-  if (versions.current() == number) {
+  const study::Versions before(folder);
+  expect_versions(folder, before);
+  if (!study::promote(folder, number, date)) {
     fmt::print("version {} answers already\n", number);
     return 0;
   }
-  const auto* judged = versions.last_of(number);
+  const auto* judged = before.last_of(number);
   if (judged != nullptr && !judged->promoted && judged->by != taken_in)
     fmt::print("this goes against the gate, which found it {}\n", against(*judged));
-  versions.record({.number = number, .by = "promote", .promoted = true, .date = date});
   fmt::print("version {} answers now\n", number);
   return 0;
 }
 
 int roll_back(const path& folder, const std::string& date) {
   const base::FileLock lock(folder / ".lock");
-  auto versions = open_to_change(folder);
+  study::Versions versions(folder);
+  expect_versions(folder, versions);
+  versions.settle();
   const auto previous = versions.previous();
   if (!previous)
     throw UsageError({.what = "no version to go back to",

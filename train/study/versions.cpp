@@ -253,4 +253,15 @@ void Versions::write_log() const {
   base::write_text(folder() / "log.json", json.dump(1) + "\n");
 }
 
+bool promote(const std::filesystem::path& study, int number, const std::string& date) {
+  const base::FileLock lock(study / ".lock");
+  Versions versions(study);
+  versions.settle();
+  const model::BundleReader bundle(versions.known(number));
+  bundle.file().verify_all();
+  if (versions.current() == number) return false;
+  versions.record({.number = number, .by = "promote", .promoted = true, .date = date});
+  return true;
+}
+
 }  // namespace elrom::study

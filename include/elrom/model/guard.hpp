@@ -50,6 +50,11 @@ class Guard {
   /// nearer is not changed by a bit. @param held (n_inputs)
   void hold(std::span<const double> inputs, std::span<double> held) const;
 
+  // The training cases that it judges by.
+  [[nodiscard]] const MatrixD& inputs() const { return inputs_; }  ///< SI, (n_cases, n_inputs)
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  [[nodiscard]] const std::vector<double>& loads() const { return loads_; }  ///< NaN: not told
+
   /// Trained range of each input, SI, (n_inputs).
   [[nodiscard]] std::span<const double> low() const { return low_; }
   [[nodiscard]] std::span<const double> high() const { return high_; }

@@ -17,6 +17,8 @@
 
 namespace elrom::serve {
 
+class Cuts;
+
 /// One bundle, whole in memory, each field by itself, so that who asks for one waits for one.
 class OpenModel {
  public:
@@ -25,6 +27,7 @@ class OpenModel {
 
   /// @throws InputError for a file that is no bundle of ours
   explicit OpenModel(const std::filesystem::path& bundle);
+  ~OpenModel();
 
   [[nodiscard]] const model::BundleReader& bundle() const { return bundle_; }
   [[nodiscard]] const field::InputSchema& schema() const { return bundle_.info().schema; }
@@ -35,6 +38,8 @@ class OpenModel {
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] std::string name() const { return file_.filename().string(); }  ///< "3.elrom"
   [[nodiscard]] bool has_intervals() const { return has_intervals_; }
+  /// Read of the mesh when it is first asked for. @throws InputError for a broken mesh
+  [[nodiscard]] const Cuts& cuts() const;
 
   struct Values {
     base::LargeArray<float> values, half_width;  ///< (i_fields, n_cells), SI; the second may be empty
@@ -55,6 +60,8 @@ class OpenModel {
   [[nodiscard]] Scratch take_scratch() const;
   mutable std::mutex mutex_;
   mutable std::vector<Scratch> scratch_;  //!< of no field now
+  mutable std::once_flag cuts_once_;
+  mutable std::unique_ptr<const Cuts> cuts_;
 };
 
 class ResidentModel {

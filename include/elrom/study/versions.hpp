@@ -73,4 +73,8 @@ class Versions {
   std::vector<VersionEvent> events_;
 };
 
+/// Makes a version answer, whatever the gate said; holds the study's lock. @return false: it does already
+/// @throws UsageError when another process holds it, or naming the versions that are there
+bool promote(const std::filesystem::path& study, int number, const std::string& date = {});
+
 }  // namespace elrom::study
