@@ -45,6 +45,7 @@ CfdCase read_case(const std::filesystem::path& path) {
                       .expected = "an OpenFOAM case with constant/polyMesh"});
   }
   if (!is_hdf5(path)) return read_fluent_ascii(path);
+  if (kind_of(path) == io::kinds::prediction.name) return read_simulation(path);
   io::survive(path, "case", [&] { (void)read_el3d(path); });
   return read_el3d(path);
 }

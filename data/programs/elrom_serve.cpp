@@ -12,6 +12,8 @@
 #include "elrom/base/text.hpp"
 #include "elrom/base/version.hpp"
 #include "elrom/cli/cli.hpp"
+#include "elrom/ingest/judge_fields.hpp"
+#include "elrom/repository/backup.hpp"
 #include "elrom/repository/rules.hpp"
 #include "elrom/serve/service.hpp"
 
@@ -19,12 +21,22 @@ namespace elrom::programs {
 namespace {
 
 struct ServeOptions {
-  std::filesystem::path data, model, page, openfoam_case, certificate, key, judged;
-  std::string database = "sqlite", address = "127.0.0.1", new_token, anonymous, mesh;
+  std::filesystem::path data, model, page, openfoam_case, certificate, key, judged, backup, restored;
+  std::string database = "sqlite", address = "127.0.0.1", new_token, anonymous;
   int port = 8080;
   http::Limits limits;
   bool quiet = false;
 };
+
+repository::RepositoryOptions repository_options(const ServeOptions& options) {
+  return {.folder = options.data, .database = options.database};
+}
+
+int print(const repository::Copied& copied, const char* what) {
+  fmt::print("{}: {} rows, {} files of fields, {:.1f} MB\n", what, copied.rows, copied.files,
+             1e-6 * static_cast<double>(copied.bytes));
+  return 0;
+}
 
 /// "NAME=ROLE"
 int make_token(const ServeOptions& options) {
@@ -33,7 +45,7 @@ int make_token(const ServeOptions& options) {
     throw UsageError(
         Problem{.what = "no new token", .found = "'" + options.new_token + "'", .expected = "NAME=ROLE"});
   const auto role = repository::roles.value<UsageError>(parts[1]);
-  repository::Repository repository({.folder = options.data, .database = options.database});
+  repository::Repository repository(repository_options(options));
   repository.write([&](repository::Transaction& transaction) {
     fmt::print("{}\n", transaction.make_token(parts[0], role));
   });
@@ -45,7 +57,13 @@ int judge(const ServeOptions& options) {
   constexpr rlim_t seconds = 50;
   const rlimit time{seconds, seconds};
   ::setrlimit(RLIMIT_CPU, &time);
-  repository::judge_fields(options.judged, options.mesh);
+  if (options.model.empty()) {
+    repository::judge_fields(options.judged, "");
+    return 0;
+  }
+  const model::BundleReader bundle(options.model);
+  repository::judge_fields(options.judged, bundle.mesh_digest());
+  ingest::judge_physics_of(options.judged, bundle.mesh({.with_corners = false}), bundle.furnace());
   return 0;
 }
 
@@ -60,13 +78,13 @@ serve::ServiceOptions service_options(const ServeOptions& options) {
   const auto program = std::filesystem::read_symlink("/proc/self/exe");
   const auto predict = program.parent_path() / "elrom-predict";
   serve::ServiceOptions service{
-      .repository = {.folder = options.data, .database = options.database},
+      .repository = repository_options(options),
       .model = options.model.empty() ? options.data / "study" : options.model,
       .page = options.page.empty() ? found_page(program.parent_path().parent_path()) : options.page,
       .predict_program = std::filesystem::exists(predict) ? predict : "",
       .openfoam_case = options.openfoam_case,
-      .judge_upload = [program](const std::filesystem::path& file, const std::string& mesh) {
-        serve::judge_in_process(program, file, mesh);
+      .judge_upload = [program](const std::filesystem::path& file, const std::filesystem::path& bundle) {
+        serve::judge_in_process(program, file, bundle);
       }};
   if (!options.anonymous.empty()) service.anonymous = repository::roles.value<UsageError>(options.anonymous);
   if (!options.quiet)
@@ -152,12 +170,21 @@ int run(int argc, char** argv) {
       ->check(cli::PositiveNumber)
       ->capture_default_str();
   app.add_flag("--quiet", options.quiet, "No line for each request on standard error");
-  app.add_option("--judge-fields", options.judged, "Look at a file of fields and end: 0 sound, 3 not")
+  app.add_option("--backup", options.backup,
+                 "Copy the repository to a new folder and end; a server may be writing")
+      ->type_name("FOLDER");
+  app.add_option("--restore", options.restored, "Fill an empty repository from such a folder and end")
+      ->type_name("FOLDER");
+  app.add_option("--judge-fields", options.judged,
+                 "Look at a file of fields and end: 0 sound, 3 not; with --model, on its mesh and by physics")
       ->type_name("FILE");
-  app.add_option("--mesh", options.mesh, "Digest of the mesh that --judge-fields wants")->type_name("DIGEST");
   if (const auto status = app.parse(argc, argv)) return *status;
   if (!options.judged.empty()) return judge(options);
   if (data->count() == 0) throw UsageError(Problem{.what = "--data is missing", .expected = "--data DIR"});
+  if (!options.backup.empty())
+    return print(repository::back_up(repository_options(options), options.backup), "backed up");
+  if (!options.restored.empty())
+    return print(repository::restore(options.restored, repository_options(options)), "restored");
   options.limits.burst = std::max(options.limits.burst, 2 * options.limits.requests_per_second);
   return options.new_token.empty() ? serve_until_stopped(options) : make_token(options);
 }

@@ -54,6 +54,10 @@ class Backend {
   [[nodiscard]] virtual std::unique_ptr<Connection> connect() = 0;
   /// Type of a column that numbers its rows.
   [[nodiscard]] virtual std::string numbering() const = 0;
+  /// Words of an INSERT that brings such a number along.
+  [[nodiscard]] virtual std::string own_number() const = 0;
+  /// After such inserts: the next row gets a number above all that are there.
+  virtual void number_on(Connection& connection, const std::string& table) const = 0;
   /// Kept from all other processes while the schema is looked at.
   virtual void lock_schema(Connection& connection) const = 0;
 };

@@ -132,6 +132,12 @@ class PostgresqlBackend final : public Backend {
   [[nodiscard]] std::string numbering() const override {
     return "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY";
   }
+  [[nodiscard]] std::string own_number() const override { return "OVERRIDING SYSTEM VALUE"; }
+  void number_on(Connection& connection, const std::string& table) const override {
+    connection.query("SELECT setval(pg_get_serial_sequence('" + table + "', 'id'), (SELECT max(id) FROM " +
+                         table + ")) FROM " + table + " LIMIT 1",
+                     {});
+  }
   void lock_schema(Connection& connection) const override { connection.query(schema_lock, {}); }
 
  private:

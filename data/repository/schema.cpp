@@ -32,7 +32,9 @@ CREATE TABLE quarantine (id {numbering}, kind TEXT NOT NULL, document TEXT NOT N
 CREATE TABLE tokens (name TEXT PRIMARY KEY, role TEXT NOT NULL, hash TEXT NOT NULL, at DOUBLE PRECISION NOT NULL);
 CREATE TABLE calls (key TEXT PRIMARY KEY, digest TEXT NOT NULL, status BIGINT NOT NULL, body TEXT NOT NULL,
   tag TEXT NOT NULL, place TEXT NOT NULL, at DOUBLE PRECISION NOT NULL);
-CREATE INDEX calls_by_age ON calls (at))"};
+CREATE INDEX calls_by_age ON calls (at))",
+    // 1.1: what builds on a result is asked for with every result
+    "CREATE INDEX lineage_by_source ON lineage (source)"};
 
 int steps_taken(Connection& connection) {
   connection.query("CREATE TABLE IF NOT EXISTS schema_steps (number BIGINT PRIMARY KEY)", {});
@@ -49,7 +51,39 @@ void take_step(const std::string& step, const std::string& numbering, Connection
   }
 }
 
+/// "id:i name:t load:r" without its table.
+Table table_of(const std::string& name, const std::string& columns) {
+  Table table{.name = name, .columns = {}};
+  for (const auto& column : base::split(columns, ' ')) {
+    const auto type = column.back() == 'i'   ? ColumnType::integer
+                      : column.back() == 'r' ? ColumnType::real
+                                             : ColumnType::text;
+    table.columns.push_back({column.substr(0, column.size() - 2), type});
+  }
+  return table;
+}
+
 }  // namespace
+
+const std::vector<Table>& tables() {
+  static const std::vector<Table> all{
+      table_of("inputs", "digest:t document:t"),
+      table_of("scenarios",
+               "id:i revision:i name:t boiler:t note:t load:r inputs:t verdict:t reason:t by:t at:r"),
+      table_of(
+          "runs",
+          "id:i revision:i scenario:i inputs:t model:t state:t worker:t lease:t lease_until:r not_before:r "
+          "attempts:i reason:t by:t at:r"),
+      table_of(
+          "results",
+          "id:i run:i scenario:i inputs:t model:t version:t verdict:t reason:t document:t fields:t at:r"),
+      table_of("lineage", "run:i source:i"),
+      table_of("fields", "digest:t bytes:i by:t at:r"),
+      table_of("quarantine", "id:i kind:t document:t reason:t by:t at:r"),
+      table_of("tokens", "name:t role:t hash:t at:r"),
+      table_of("calls", "key:t digest:t status:i body:t tag:t place:t at:r")};
+  return all;
+}
 
 int schema_steps() { return static_cast<int>(steps.size()); }
 

@@ -90,6 +90,8 @@ class SqliteBackend final : public Backend {
     return std::make_unique<SqliteConnection>(file_, writing_);
   }
   [[nodiscard]] std::string numbering() const override { return "INTEGER PRIMARY KEY AUTOINCREMENT"; }
+  [[nodiscard]] std::string own_number() const override { return ""; }
+  void number_on(Connection& /*connection*/, const std::string& /*table*/) const override {}  // by itself
   void lock_schema(Connection& /*connection*/) const override {}  // whoever writes is alone
 
  private:

@@ -101,6 +101,18 @@ std::vector<Id> sources_of(Id run, Connection& connection) {
                  [](const DbRows& row) { return row.integer(0); });
 }
 
+std::vector<ModelResult> results_where(const std::string& condition, const DbValues& values,
+                                       Connection& connection) {
+  auto found = list_of(
+      connection.query("SELECT " + std::string(result_columns) + " FROM results WHERE " + condition, values),
+      result_in);
+  for (auto& one : found)
+    one.followed_by =
+        list_of(connection.query("SELECT run FROM lineage WHERE source = $1 ORDER BY run", {one.id}),
+                [](const DbRows& row) { return row.integer(0); });
+  return found;
+}
+
 }  // namespace
 
 // Scenarios
@@ -181,17 +193,25 @@ std::string Transaction::inputs(const std::string& digest) {
 Run Transaction::add_run(Id scenario_id, const std::string& model, const std::vector<Id>& sources,
                          const std::string& by) {
   const auto of = scenario(scenario_id);
+  const Id id = insert_run({.scenario = of.id, .inputs_digest = of.inputs_digest, .model = model, .by = by});
+  for (const Id source : sources) {
+    (void)result(source);
+    follow(id, source);
+  }
+  return run(id);
+}
+
+Id Transaction::insert_run(const Run& run) {
   const auto row = connection_.query(
       "INSERT INTO runs (revision, scenario, inputs, model, state, worker, lease, lease_until, not_before, "
       "attempts, reason, by, at) VALUES (1, $1, $2, $3, 'waiting', '', '', 0, 0, 0, '', $4, $5) RETURNING id",
-      {of.id, of.inputs_digest, model, by, now_});
+      {run.scenario, run.inputs_digest, run.model, run.by, now_});
   row->next();
-  const Id id = row->integer(0);
-  for (const Id source : sources) {
-    (void)result(source);
-    connection_.query("INSERT INTO lineage VALUES ($1, $2) ON CONFLICT DO NOTHING", {id, source});
-  }
-  return run(id);
+  return row->integer(0);
+}
+
+void Transaction::follow(Id run, Id source) {
+  connection_.query("INSERT INTO lineage VALUES ($1, $2) ON CONFLICT DO NOTHING", {run, source});
 }
 
 Run Transaction::run(Id id) {
@@ -275,7 +295,10 @@ Run Transaction::renew(Id id, const std::string& lease, double lease_s) {
 Run Transaction::give_back(Id id, const std::string& lease, const Outcome& outcome) {
   if (outcome.state == RunState::running) throw UsageError("a run that is given back is not running");
   auto found = leased(id, lease);
-  if (outcome.state == RunState::done) keep_result(found, outcome.result);
+  if (outcome.state == RunState::done) {
+    const Id result = keep_result(found, outcome.result);
+    for (const auto& model : outcome.ask) ask(model, found, result);
+  }
   found.state = outcome.state;
   found.reason = outcome.reason;
   found.lease.clear();
@@ -289,37 +312,49 @@ Run Transaction::give_back(Id id, const std::string& lease, const Outcome& outco
 
 // Results
 
-void Transaction::keep_result(const Run& run, ModelResult result) {
+Id Transaction::keep_result(const Run& run, ModelResult result) {
   if (!result.fields.empty() && !fields(result.fields))
     throw InputError(Problem{.what = "fields that are not here",
                              .found = "'" + result.fields + "'",
                              .advice = "send them before the result"});
-  connection_.query(
+  const auto row = connection_.query(
       "INSERT INTO results (run, scenario, inputs, model, version, verdict, reason, document, fields, at) "
-      "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)",
+      "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10) RETURNING id",
       {run.id, run.scenario, run.inputs_digest, run.model, result.version, result.verdict, result.reason,
        result.document, result.fields, now_});
+  row->next();
+  return row->integer(0);
+}
+
+/// A run may cost a day: the same inputs are not simulated twice.
+void Transaction::ask(const std::string& model, const Run& after, Id result) {
+  const auto there = connection_.query(
+      "SELECT id FROM runs WHERE model = $1 AND inputs = $2 AND state IN ('waiting', 'running', 'done') "
+      "ORDER BY id LIMIT 1",
+      {model, after.inputs_digest});
+  const Id id = there->next() ? there->integer(0)
+                              : insert_run({.scenario = after.scenario,
+                                            .inputs_digest = after.inputs_digest,
+                                            .model = model,
+                                            .by = after.by});
+  follow(id, result);
 }
 
 ModelResult Transaction::result(Id id) {
-  const auto row =
-      connection_.query("SELECT " + std::string(result_columns) + " FROM results WHERE id = $1", {id});
-  if (!row->next()) not_found("result", id);
-  return result_in(*row);
+  auto found = results_where("id = $1", {id}, connection_);
+  if (found.empty()) not_found("result", id);
+  return std::move(found.front());
 }
 
 ModelResult Transaction::result_of(Id run) {
-  const auto row =
-      connection_.query("SELECT " + std::string(result_columns) + " FROM results WHERE run = $1", {run});
-  if (!row->next()) not_found("result of run", run);
-  return result_in(*row);
+  auto found = results_where("run = $1", {run}, connection_);
+  if (found.empty()) not_found("result of run", run);
+  return std::move(found.front());
 }
 
 std::vector<ModelResult> Transaction::results(Id scenario, const ListPart& part) {
-  return list_of(connection_.query("SELECT " + std::string(result_columns) +
-                                       " FROM results WHERE scenario = $1 AND id > $2 ORDER BY id LIMIT $3",
-                                   {scenario, part.after, std::int64_t{part.n}}),
-                 result_in);
+  return results_where("scenario = $1 AND id > $2 ORDER BY id LIMIT $3",
+                       {scenario, part.after, std::int64_t{part.n}}, connection_);
 }
 
 // Fields

@@ -42,11 +42,12 @@ class Upload {
   void judge() const {
     const auto model = desk_.model.now();
     try {
-      desk_.options.judge_upload(file_, model ? model->bundle().mesh_digest() : "");
+      desk_.options.judge_upload(file_, model ? model->file() : std::filesystem::path());
     } catch (const InputError& error) {
       std::string reason = error.what();
-      if (const auto at = reason.find(file_.string()); at != std::string::npos)
-        reason.replace(at, file_.string().size(), "the upload");
+      for (const auto& name : {file_.string(), file_.filename().string()})
+        if (const auto at = reason.find(name); at != std::string::npos)
+          reason.replace(at, name.size(), "the upload");
       throw InputError(reason);
     }
   }

@@ -12,11 +12,15 @@ using repository::Transaction;
 
 std::string tag_of(const Run& run) { return "\"" + std::to_string(run.revision) + "\""; }
 
+void expect_model(const std::string& name) {
+  if (name.empty() || name.size() > 100)
+    throw InputError(
+        Problem{.what = "no name of a model", .found = "'" + name + "'", .expected = "1 to 100 characters"});
+}
+
 std::string model_in(const JsonBody& body) {
   auto model = body.text("model");
-  if (model.empty() || model.size() > 100)
-    throw InputError(
-        Problem{.what = "no name of a model", .found = "'" + model + "'", .expected = "1 to 100 characters"});
+  expect_model(model);
   return model;
 }
 
@@ -76,7 +80,9 @@ http::Response claim(Desk& desk, const Ask& ask) {
     if (!run)
       return Answer{.status = 204, .kept = transaction.changed_runs()};  // masters ask again and again
     auto document = document_of(*run);
+    const auto load = transaction.scenario(run->scenario).load;
     document["lease"] = run->lease;
+    document["load"] = load < 0 ? Json() : Json(load);
     document["inputs"] = Json::parse(transaction.inputs(run->inputs_digest));
     return Answer{.status = 201, .body = document.dump() + "\n", .place = "/runs/" + std::to_string(run->id)};
   });
@@ -100,6 +106,8 @@ Outcome outcome_in(const JsonBody& body) {
     throw InputError(Problem{
         .what = "wrong state", .found = "running", .expected = "done, failed, quarantined or waiting"});
   if (outcome.state != repository::RunState::done) return outcome;
+  outcome.ask = body.texts("ask");
+  for (const auto& model : outcome.ask) expect_model(model);
   const auto result = body.object("result", {"version", "verdict", "reason", "document", "fields"});
   outcome.result = {.version = result.text("version"),
                     .verdict = result.text_or("verdict", ""),
@@ -110,13 +118,17 @@ Outcome outcome_in(const JsonBody& body) {
 }
 
 http::Response give_back(Desk& desk, const Ask& ask) {
-  const JsonBody body(ask.request.body, {"lease", "state", "reason", "retry_after_s", "result"});
+  const JsonBody body(ask.request.body, {"lease", "state", "reason", "retry_after_s", "result", "ask"});
   const auto outcome = outcome_in(body);
   const auto lease = body.text("lease");
   return once(desk, ask, [&](Transaction& transaction) {
     const auto run = transaction.give_back(id_of(ask), lease, outcome);
     auto document = document_of(run);
-    if (run.state == repository::RunState::done) document["result"] = transaction.result_of(run.id).id;
+    if (run.state == repository::RunState::done) {
+      const auto result = transaction.result_of(run.id);
+      document["result"] = result.id;
+      document["followed_by"] = result.followed_by;
+    }
     return Answer{.status = 200, .body = document.dump() + "\n", .tag = tag_of(run)};
   });
 }
@@ -186,13 +198,15 @@ std::vector<Route> run_routes() {
       {.method = "POST",
        .path = "/runs/{id}/outcome",
        .role = Role::model,
-       .summary = "Gives a run back: done with its result, failed, quarantined, or waiting to be tried again",
+       .summary =
+           "Gives a run back: done with its result, failed, quarantined, or waiting to be tried again. "
+           "`ask`: models that are to work on the same inputs next",
        .answers = {{200, "kept"},
                    {409, "the run is another's by now, or the key was used for another request"}},
        .answer = give_back,
        .body = BodyKind::json,
        .example =
-           R"({"lease": "", "state": "done", "reason": "", "retry_after_s": 0, "result": {"version": "1", "verdict": "inside", "reason": "", "document": {}, "fields": ""}})",
+           R"({"lease": "", "state": "done", "reason": "", "retry_after_s": 0, "result": {"version": "1", "verdict": "inside", "reason": "", "document": {}, "fields": ""}, "ask": ["el3d"]})",
        .wrong = R"({"lease": "", "state": "running"})",
        .required = {"lease", "state"},
        .keyed = true},

@@ -153,6 +153,7 @@ Json document_of(const repository::ModelResult& result) {
           {"reason", text_or_null(result.reason)},
           {"document", result.document.empty() ? Json() : Json::parse(result.document)},
           {"fields", text_or_null(result.fields)},
+          {"followed_by", result.followed_by},
           {"at", result.at}};
 }
 

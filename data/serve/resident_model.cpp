@@ -27,7 +27,6 @@ OpenModel::OpenModel(const std::filesystem::path& bundle)
     : bundle_(bundle),
       guard_(bundle_.guard()),
       file_(bundle),
-      name_(bundle.filename().string()),
       has_intervals_(has_all_intervals(bundle_)),
       plain_(fields().size()),
       with_intervals_(has_intervals_ ? fields().size() : 0) {

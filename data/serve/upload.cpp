@@ -4,10 +4,10 @@
 namespace elrom::serve {
 
 void judge_in_process(const std::filesystem::path& program, const std::filesystem::path& file,
-                      const std::string& mesh_digest) {
+                      const std::filesystem::path& bundle) {
   constexpr int patience_s = 60;
   std::vector<std::string> command{program.string(), "--judge-fields", file.string()};
-  if (!mesh_digest.empty()) command.insert(command.end(), {"--mesh", mesh_digest});
+  if (!bundle.empty()) command.insert(command.end(), {"--model", bundle.string()});
   const auto ended = run_process(command, patience_s);
   if (!ended.in_time)
     throw InputError(Problem{.what = "reading the file comes to no end",

@@ -2,9 +2,14 @@
 // server is killed while they are on their way; afterwards every one must be there once. Then what fields
 // cost, up, down and predicted, how soon a page shows what a slider did, and what many clients at once are
 // told.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstring>
@@ -26,6 +31,7 @@
 #include "support/sample_bundle.hpp"
 #include "support/serving.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/tiny_disk.hpp"
 
 namespace elrom::benchmark {
 namespace {
@@ -40,10 +46,11 @@ struct Options {
   [[nodiscard]] double load_seconds() const { return small ? 3 : 60; }
 };
 
-/// A server with a folder and a token of its own.
+/// A server with a folder and a token of its own, on a disk of its own where that may be mounted.
 struct Place {
   test::TemporaryFolder folder;
-  std::string data = (folder / "data").string();
+  test::TinyDisk disk{folder / "disk", "1g"};
+  std::string data = (folder / "disk/data").string();
   std::vector<std::string> arguments{"--data", data, "--quiet", "--requests-per-second", "1000000"};
   std::string token;
   std::unique_ptr<Serving> serving;
@@ -94,6 +101,25 @@ class Killer {
           }
         }) {}
   int n_kills = 0;
+
+ private:
+  std::jthread thread_;
+};
+
+/// Takes all the room on the server's disk for a moment, again and again.
+class Filler {
+ public:
+  explicit Filler(const Place& place)
+      : thread_([&place, this](const std::stop_token& stop) {
+          base::Random random(base::Seed(12).derive("filler"));
+          while (place.disk.mounted() && !stop.stop_requested()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1500 + random.below(1500)));
+            const test::Ballast ballast(place.folder / "disk/ballast");
+            std::this_thread::sleep_for(std::chrono::milliseconds(200));
+            ++n_times;
+          }
+        }) {}
+  int n_times = 0;
 
  private:
   std::jthread thread_;
@@ -191,7 +217,7 @@ void work_off(FaultyClient& client, int i, base::Random& random) {
 }
 
 struct FaultedCalls {
-  int of = 0, passed = 0, kills = 0, cut = 0;
+  int of = 0, passed = 0, kills = 0, cut = 0, full = 0;
   double seconds = 0;
 };
 
@@ -232,6 +258,7 @@ FaultedCalls faulted_calls(const std::string& database, const Options& options) 
   const Stopwatch clock;
   {
     Killer killer(place);
+    Filler filler(place);
     std::vector<std::jthread> clients;
     for (int c = 0; c < n_clients; ++c)
       clients.emplace_back([&, c] {
@@ -244,6 +271,7 @@ FaultedCalls faulted_calls(const std::string& database, const Options& options) 
       });
     clients.clear();
     result.kills = killer.n_kills;
+    result.full = filler.n_times;
   }
   result.seconds = clock.seconds();
   result.passed = count_sound(place, n) - n_unlike;
@@ -262,6 +290,109 @@ Json inputs_of(const serve::OpenModel& model) {
     inputs[schema[i].name + " [" + schema[i].unit + "]"] =
         0.5 * (model.guard().low()[i] + model.guard().high()[i]);
   return inputs;
+}
+
+/// A master beside the server, killed and begun again.
+class MasterProcess {
+ public:
+  MasterProcess(const Place& place, const std::string& bundle) {
+    base::write_text(place.folder / "token", place.token);
+    command_ = {sibling("elrom-master").string(),
+                "elrom",
+                "--repository",
+                place.serving->url(),
+                "--token-file",
+                (place.folder / "token").string(),
+                "--bundle",
+                bundle,
+                "--lease",
+                "2",
+                "--work",
+                (place.folder / "work").string()};
+    begin();
+  }
+  ~MasterProcess() { end(); }
+  MasterProcess(const MasterProcess&) = delete;
+  MasterProcess& operator=(const MasterProcess&) = delete;
+
+  void kill() {
+    end();
+    begin();
+  }
+
+ private:
+  void begin() {
+    std::vector<char*> pointers;
+    for (auto& word : command_) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    posix_spawn_file_actions_t silent;
+    ::posix_spawn_file_actions_init(&silent);
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
+      ::posix_spawn_file_actions_addopen(&silent, stream, "/dev/null", O_WRONLY, 0);
+    const int fault = ::posix_spawn(&process_, pointers[0], &silent, nullptr, pointers.data(), environ);
+    ::posix_spawn_file_actions_destroy(&silent);
+    if (fault != 0) throw SystemError("elrom-master does not start");
+  }
+  void end() {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+
+  std::vector<std::string> command_;
+  pid_t process_ = -1;
+};
+
+struct FaultedRuns {
+  int of = 0, passed = 0, kills = 0;
+  double seconds = 0;
+};
+
+/// Runs that real masters work off while they and the server are killed: each has one result, whose fields
+/// are there.
+FaultedRuns faulted_runs(const std::string& database, const std::string& bundle, const Options& options) {
+  Place place(database, bundle);
+  FaultedRuns result{.of = options.small ? 20 : 200};
+  const auto inputs = inputs_of(serve::OpenModel(bundle));
+  const auto post = [&](const std::string& target, const Json& body, const std::string& key) {
+    const auto answer =
+        http::Client(place.serving->url())
+            .send({.method = "POST", .target = target, .headers = place.headers(key), .body = body.dump()});
+    if (answer.status != 201) throw SystemError("not taken: " + answer.body);
+  };
+  for (int i = 1; i <= result.of; ++i) {
+    auto own = inputs;
+    own.begin().value() = own.begin()->get<double>() * (1 + 1e-4 * i);
+    post("/scenarios", {{"name", "s" + std::to_string(i)}, {"inputs", own}}, "s" + std::to_string(i));
+    post("/runs", {{"scenario", i}, {"model", "elrom"}}, "r" + std::to_string(i));
+  }
+  const Stopwatch clock;
+  {
+    base::Random random(base::Seed(19).derive("masters"));
+    MasterProcess a(place, bundle), b(place, bundle), c(place, bundle);
+    const std::array masters{&a, &b, &c};
+    const auto n_open = [&] {
+      return place.all("/runs?state=waiting").size() + place.all("/runs?state=running").size();
+    };
+    for (; n_open() > 0 && clock.seconds() < 600; ++result.kills) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(300 + random.below(700)));
+      masters[random.below(masters.size())]->kill();
+      if (result.kills % 4 == 3) {
+        place.serving->end(SIGKILL);
+        place.serving->begin();
+      }
+    }
+  }
+  result.seconds = clock.seconds();
+  for (const auto& one : place.all("/scenarios")) {
+    const auto results = place.get("/scenarios/" + one["id"].dump() + "/results")["items"];
+    if (results.size() != 1 || !results[0]["fields"].is_string()) continue;
+    const auto fields = http::Client(place.serving->url())
+                            .send({.method = "GET",
+                                   .target = "/fields/" + results[0]["fields"].get<std::string>(),
+                                   .headers = place.headers("")});
+    result.passed += fields.status == 200;
+  }
+  return result;
 }
 
 /// Nine fields up, as a file of their own each time, and down again.
@@ -377,9 +508,9 @@ Load load(const Place& place, const Json& inputs, double seconds) {
 /// From a key that moves a slider to the new picture, in a headless browser. null: there is none, or no page.
 Json slider(const std::string& bundle, const Options& options) {
   const auto bin = sibling("elrom-serve").parent_path();
-  const auto outcome = test::outcome_of(std::string("node '" ELROM_SOURCE_DIR "/tests/page/slider.mjs' '") +
-                                        bin.string() + "' '" + (bin.parent_path() / "page-packages").string() +
-                                        "' '" + bundle + "' " + (options.small ? "4" : "22"));
+  const auto outcome = test::outcome_of(
+      std::string("node '" ELROM_SOURCE_DIR "/tests/page/slider.mjs' '") + bin.string() + "' '" +
+      (bin.parent_path() / "page-packages").string() + "' '" + bundle + "' " + (options.small ? "4" : "22"));
   const auto said = base::split(base::trim(outcome.text), '\n').back();
   if (outcome.status != 0) {
     fmt::print("slider not measured: {}\n", said);
@@ -394,13 +525,19 @@ Json slider(const std::string& bundle, const Options& options) {
 Json measure_faults(const std::string& name, const std::string& database, const Options& options) {
   const auto calls = faulted_calls(database, options);
   fmt::print(
-      "{}: {} of {} faulted calls there once; the server was killed {} times, {} calls were cut off; {}\n",
-      name, calls.passed, calls.of, calls.kills, calls.cut, base::duration(calls.seconds));
-  return {{"passed", calls.passed},
-          {"of", calls.of},
-          {"kills", calls.kills},
-          {"cut", calls.cut},
-          {"seconds", calls.seconds}};
+      "{}: {} of {} faulted calls there once; the server was killed {} times, the disk full {} times, {} calls "
+      "were cut off; {}\n",
+      name, calls.passed, calls.of, calls.kills, calls.full, calls.cut, base::duration(calls.seconds));
+  return {{"passed", calls.passed},  {"of", calls.of},   {"kills", calls.kills},
+          {"disk_full", calls.full}, {"cut", calls.cut}, {"seconds", calls.seconds}};
+}
+
+Json measure_runs(const std::string& name, const std::string& database, const std::string& bundle,
+                  const Options& options) {
+  const auto runs = faulted_runs(database, bundle, options);
+  fmt::print("{}: {} of {} runs done once while masters and server were killed {} times; {}\n", name,
+             runs.passed, runs.of, runs.kills, base::duration(runs.seconds));
+  return {{"passed", runs.passed}, {"of", runs.of}, {"kills", runs.kills}, {"seconds", runs.seconds}};
 }
 
 std::string bundle_of(const Options& options, const test::TemporaryFolder& folder) {
@@ -413,13 +550,16 @@ std::string bundle_of(const Options& options, const test::TemporaryFolder& folde
 
 Json measure(const Options& options) {
   Json figures;
-  figures["faulted_calls"] = measure_faults("SQLite", "sqlite", options);
-  if (test::PostgresqlServer::available()) {
-    const test::PostgresqlServer server;
-    figures["faulted_calls_postgresql"] = measure_faults("PostgreSQL", server.url(), options);
-  }
   const test::TemporaryFolder folder;
   const auto bundle = bundle_of(options, folder);
+  figures["faulted_calls"] = measure_faults("SQLite", "sqlite", options);
+  figures["faulted_runs"] = measure_runs("SQLite", "sqlite", bundle, options);
+  if (test::PostgresqlServer::available()) {
+    figures["faulted_calls_postgresql"] =
+        measure_faults("PostgreSQL", test::PostgresqlServer().url(), options);
+    figures["faulted_runs_postgresql"] =
+        measure_runs("PostgreSQL", test::PostgresqlServer().url(), bundle, options);
+  }
   const serve::OpenModel model(bundle);
   const auto inputs = inputs_of(model);
   const Place place("sqlite", bundle);

@@ -1,4 +1,3 @@
-#include <sys/mount.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "elrom/io/tensor_file.hpp"
 #include "process.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/tiny_disk.hpp"
 
 namespace elrom::faults {
 namespace {
@@ -95,28 +95,6 @@ bool whole_or_absent(const fs::path& bundle) {
     return false;
   }
 }
-
-/// A file system of a few pages that fills at once; gone with the object.
-class TinyDisk {
- public:
-  TinyDisk(const fs::path& folder, const std::string& size) : folder_(folder) {
-    fs::create_directories(folder);
-    mounted_ = mount("tmpfs", folder.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
-    if (!mounted_) reason_ = std::strerror(errno);
-  }
-  ~TinyDisk() {
-    if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
-  }
-  TinyDisk(const TinyDisk&) = delete;
-  TinyDisk& operator=(const TinyDisk&) = delete;
-  [[nodiscard]] bool mounted() const { return mounted_; }
-  [[nodiscard]] const std::string& reason() const { return reason_; }
-
- private:
-  fs::path folder_;
-  bool mounted_ = false;
-  std::string reason_;
-};
 
 }  // namespace
 
@@ -209,7 +187,7 @@ Tally disk_full(const Workshop& shop) {
   Tally tally;
   const auto folder = shop.folder / "tiny_disk";
   for (const std::string size : {"64k", "400k", "1500k"}) {
-    const TinyDisk disk(folder, size);
+    const test::TinyDisk disk(folder, size);
     if (!disk.mounted()) {
       tally.skipped = "no small file system may be mounted here (" + disk.reason() + ")";
       return tally;

@@ -66,20 +66,28 @@ struct Share {
 
 const std::vector<Share>& shares() {
   static const std::vector<Share> all = {
-      {"bundle", 980, 700},
-      {"bundle", 20, 12000},
-      {"bundle_content", 20, 400},
-      {"cases_csv", 15, 1000},
-      {"cases_json", 15, 1000},
-      {"cases_toml", 10, 1000},
-      {"fluent_ascii", 10, 1000},
-      {"foam", 10, 1000},
-      {"vtu", 10, 2000},
-      // Each of their inputs costs a process, since HDF5 is not to be trusted.
-      {"collisions", 1, 40000},
-      {"collisions_content", 1, 400},
-      {"collision_model", 20, 4000},
-      {"collision_model_content", 10, 400}};
+    {"bundle", 980, 700},
+    {"bundle", 20, 12000},
+    {"bundle_content", 20, 400},
+    {"cases_csv", 15, 1000},
+    {"cases_json", 15, 1000},
+    {"cases_toml", 10, 1000},
+    {"fluent_ascii", 10, 1000},
+    {"foam", 10, 1000},
+    {"vtu", 10, 2000},
+    // Each of their inputs costs a process, since HDF5 is not to be trusted.
+    {"collisions", 1, 40000},
+    {"collisions_content", 1, 400},
+    {"collision_model", 20, 4000},
+    {"collision_model_content", 10, 400},
+#if ELROM_HAS_SERVE
+    {"http_target", 20, 400},
+    {"json_body", 20, 2000},
+    {"service_request", 10, 1000},
+    {"http_wire", 5, 1000},
+    {"fields_upload", 1, 40000}
+#endif
+  };
   return all;
 }
 

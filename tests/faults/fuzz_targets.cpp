@@ -11,6 +11,7 @@
 #include "elrom/ingest/cfd_case.hpp"
 #include "fuzz_bundles.hpp"
 #include "fuzz_collisions.hpp"
+#include "fuzz_service.hpp"
 #include "memory_file.hpp"
 
 namespace elrom::faults {
@@ -64,18 +65,24 @@ void fuzz_vtu(Bytes input) {
 }  // namespace
 
 const std::vector<FuzzTarget>& fuzz_targets() {
-  static const std::vector<FuzzTarget> targets = {{"bundle", fuzz_bundle},
-                                                  {"bundle_content", fuzz_bundle_content},
-                                                  {"cases_csv", fuzz_cases_csv},
-                                                  {"cases_json", fuzz_cases_json},
-                                                  {"cases_toml", fuzz_cases_toml},
-                                                  {"fluent_ascii", fuzz_fluent},
-                                                  {"foam", fuzz_foam},
-                                                  {"vtu", fuzz_vtu},
-                                                  {"collisions", fuzz_collisions},
-                                                  {"collisions_content", fuzz_collisions_content},
-                                                  {"collision_model", fuzz_collision_model},
-                                                  {"collision_model_content", fuzz_collision_model_content}};
+  static const std::vector<FuzzTarget> targets = [] {
+    std::vector<FuzzTarget> all = {{"bundle", fuzz_bundle},
+                                   {"bundle_content", fuzz_bundle_content},
+                                   {"cases_csv", fuzz_cases_csv},
+                                   {"cases_json", fuzz_cases_json},
+                                   {"cases_toml", fuzz_cases_toml},
+                                   {"fluent_ascii", fuzz_fluent},
+                                   {"foam", fuzz_foam},
+                                   {"vtu", fuzz_vtu},
+                                   {"collisions", fuzz_collisions},
+                                   {"collisions_content", fuzz_collisions_content},
+                                   {"collision_model", fuzz_collision_model},
+                                   {"collision_model_content", fuzz_collision_model_content}};
+#if ELROM_HAS_SERVE
+    for (auto& target : service_targets()) all.push_back(std::move(target));
+#endif
+    return all;
+  }();
   return targets;
 }
 
@@ -92,6 +99,9 @@ std::vector<std::string> seeds_of(const std::string& target) {
     for (const auto& [name, bundle] : small_bundles()) add(bundle);
   }
   if (target.starts_with("collision")) seeds = collision_seeds(target);
+#if ELROM_HAS_SERVE
+  if (const auto found = service_seeds(target); !found.empty()) seeds = found;
+#endif
   std::vector<fs::path> files;
   const auto corpus = fs::path(ELROM_SOURCE_DIR) / "tests/faults/corpus" / target;
   if (fs::exists(corpus)) files.assign(fs::directory_iterator(corpus), fs::directory_iterator());

@@ -21,7 +21,7 @@ struct FuzzTarget {
 /// bundle (a file of any bytes), bundle_content (a bundle with true digests whose texts and tensors follow
 /// the input), cases_csv, cases_json, cases_toml, fluent_ascii, foam, vtu; collisions (a file of any
 /// bytes), collisions_content (a set whose values, shapes and settings follow the input), collision_model and
-/// collision_model_content as those of bundles.
+/// collision_model_content as those of bundles; those of fuzz_service.hpp.
 [[nodiscard]] const std::vector<FuzzTarget>& fuzz_targets();
 
 /// Small inputs to start from, and inputs that once did harm: the files of tests/faults/corpus/<target>;

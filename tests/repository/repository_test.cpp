@@ -230,6 +230,41 @@ TEST_P(RepositoryOn, AnOlderDatabaseIsBroughtUp) {
   EXPECT_TRUE(add_once(repository(), "k", "a").repeated);
 }
 
+TEST_P(RepositoryOn, ADatabaseOfTheFirstReleaseIsBroughtUpWithAllThatIsInIt) {
+  std::filesystem::create_directories(options().folder);
+  {
+    const auto backend = open_backend(options().database, options().folder);
+    const auto connection = backend->connect();
+    bring_up(*backend, *connection, 1);
+    transact(*connection, true, [&] {
+      for (
+          const auto* row :
+          {"INSERT INTO inputs VALUES ('d', '{}')",
+           "INSERT INTO scenarios (revision, name, boiler, note, load, inputs, verdict, reason, by, at) "
+           "VALUES (1, 'old', '', '', 0.5, 'd', '', '', 'x', 7)",
+           "INSERT INTO runs (revision, scenario, inputs, model, state, worker, lease, lease_until, not_before, "
+           "attempts, reason, by, at) VALUES (1, 1, 'd', 'elrom', 'done', 'w', '', 0, 0, 1, '', 'x', 7), "
+           "(1, 1, 'd', 'sfw3d', 'waiting', '', '', 0, 0, 0, '', 'x', 7)",
+           "INSERT INTO results (run, scenario, inputs, model, version, verdict, reason, document, fields, at) "
+           "VALUES (1, 1, 'd', 'elrom', 'v1', 'inside', '', '{}', '', 7)",
+           "INSERT INTO lineage VALUES (2, 1)"})
+        connection->query(row, {});
+    });
+  }
+
+  repository().read([&](Transaction& transaction) {
+    EXPECT_EQ(transaction.scenario(1).name, "old");
+    EXPECT_EQ(transaction.run(2).state, RunState::waiting);
+    EXPECT_THAT(transaction.result(1).followed_by, ::testing::ElementsAre(2));
+  });
+  close();
+
+  const auto backend = open_backend(options().database, options().folder);
+  const auto row = backend->connect()->query("SELECT value FROM about WHERE key = 'format_minor'", {});
+  ASSERT_TRUE(row->next());
+  EXPECT_EQ(row->text(0), std::to_string(schema_steps() - 1)) << "each step is a minor version";
+}
+
 TEST_P(RepositoryOn, AFailedTransactionLeavesItsConnectionUsable) {
   for (int i = 0; i < 3; ++i)
     EXPECT_ERROR(InputError, "no", repository().write([](Transaction& transaction) {

@@ -189,6 +189,45 @@ TEST_P(TransactionOn, AResultNamesModelInputsAndSources) {
   EXPECT_EQ(write([&](Transaction& t) { return t.results(of.id, {}); }).size(), 1U);
 }
 
+TEST_P(TransactionOn, AnOutcomeAsksForTheNextModelsWorkOnTheSameInputs) {
+  const auto of = scenario("a");
+  const auto run = waiting_run(of.id);
+  (void)claim("x");
+  write([&](Transaction& t) {  // a change since then is another matter
+    auto changed = t.scenario(of.id);
+    changed.inputs = R"({"primary_air [kg/s]":99.0})";
+    return t.change(changed, 1);
+  });
+
+  give_back(write([&](Transaction& t) { return t.run(run.id); }),
+            {.result = {.version = "v1", .verdict = "outside"}, .ask = {"el3d"}});
+
+  const auto result = write([&](Transaction& t) { return t.result_of(run.id); });
+  ASSERT_EQ(result.followed_by.size(), 1U);
+  const auto asked = write([&](Transaction& t) { return t.run(result.followed_by[0]); });
+  EXPECT_EQ(asked.model, "el3d");
+  EXPECT_EQ(asked.state, RunState::waiting);
+  EXPECT_EQ(asked.inputs_digest, of.inputs_digest);
+  EXPECT_THAT(asked.sources, ElementsAre(result.id));
+}
+
+TEST_P(TransactionOn, TheSameInputsAreAskedForOnceAndAgainAfterAFailure) {
+  const auto of = scenario("a");
+  const auto ask = [&] {
+    waiting_run(of.id);
+    const auto run = *claim("x");
+    give_back(run, {.result = {.version = "v1"}, .ask = {"el3d"}});
+    return write([&](Transaction& t) { return t.result_of(run.id); }).followed_by;
+  };
+  const auto first = ask(), second = ask();
+  give_back(*claim("x", 60, "el3d"), {.state = RunState::failed, .reason = "it diverged"});
+  const auto third = ask();
+
+  EXPECT_EQ(first, second);
+  EXPECT_NE(first, third);
+  EXPECT_EQ(write([&](Transaction& t) { return t.run(first[0]); }).sources.size(), 2U);
+}
+
 TEST_P(TransactionOn, AResultWithoutItsFieldsIsRefusedWhole) {
   waiting_run(scenario("a").id);
   const auto run = *claim("x");

@@ -10,11 +10,13 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/http/client.hpp"
+#include "elrom/io/hdf5.hpp"
 #include "support/outcome.hpp"
 #include "support/raw_connection.hpp"
 #include "support/sample_bundle.hpp"
 #include "support/serving.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/tiny_disk.hpp"
 
 namespace elrom::serve {
 namespace {
@@ -28,7 +30,8 @@ const std::string program = ELROM_BIN_DIR "/elrom-serve";
 
 struct Started {
   test::TemporaryFolder folder;
-  std::string data = (folder / "data").string();
+  test::TinyDisk disk{folder / "disk", "4m"};
+  std::string data = (folder / "disk/data").string();
   std::string token = base::trim(outcome_of(program + " --data " + data + " --make-token me=admin").text);
   std::unique_ptr<Serving> serving;
 
@@ -57,6 +60,15 @@ struct Started {
     return inputs.dump();
   }
 };
+
+/// Gives a field in a file of predictions one value everywhere.
+void flatten(const std::filesystem::path& file, const std::string& field) {
+  const auto hdf = io::Hdf5File::open(file, io::Hdf5File::Access::edit);
+  const auto dataset = hdf.group("elrom/fields").dataset(field);
+  auto values = dataset.read<float>();
+  for (auto& value : values) value = values.front();
+  dataset.write(std::span<const float>(values));
+}
 
 TEST(ElromServe, KeepsWhatItAcknowledgedWhenItIsKilled) {
   Started started;
@@ -108,6 +120,70 @@ TEST(ElromServe, LooksAtUploadsInAProcessOfItsOwn) {
   EXPECT_EQ(started.call("GET", "/fields/" + digest).body, file);
   EXPECT_EQ(refused.status, 422) << refused.body;
   EXPECT_EQ(started.call("GET", "/healthz").status, 200);
+}
+
+TEST(ElromServe, RefusesFieldsThatPhysicsForbids) {
+  Started started;
+  const auto file = started.call("POST", "/predictions", R"({"inputs": )" + Started::inputs() + "}").body;
+  test::write_bytes(started.folder / "flat.hdf", file);
+  flatten(started.folder / "flat.hdf", "gas_velocity_z");
+  const auto flat = test::read_bytes(started.folder / "flat.hdf");
+
+  const auto refused = started.call("PUT", "/fields/" + base::sha256(std::as_bytes(std::span(flat))), flat,
+                                    "k", "application/x-hdf5");
+
+  EXPECT_EQ(refused.status, 422) << refused.body;
+  EXPECT_THAT(refused.body, HasSubstr("gas_velocity_z"));
+  EXPECT_THAT(refused.body, HasSubstr("/quarantine/1"));
+}
+
+TEST(ElromServe, AFullDiskLosesNothingThatWasAcknowledged) {
+  Started started;
+  if (!started.disk.mounted()) GTEST_SKIP() << "no small disk may be mounted: " << started.disk.reason();
+  const auto add = [&](int i) {
+    const auto name = std::to_string(i);
+    return started
+        .call("POST", "/scenarios", R"({"name": ")" + name + R"(", "inputs": )" + Started::inputs() + "}",
+              name)
+        .status;
+  };
+  std::vector<int> acknowledged;
+  int n_refused = 0;
+  {
+    const test::Ballast ballast(started.folder / "disk/ballast");
+    for (int i = 0; n_refused < 3 && i < 100000; ++i) {
+      const int status = add(i);
+      if (status == 201)
+        acknowledged.push_back(i);
+      else
+        n_refused += status == 503;
+    }
+  }
+  EXPECT_EQ(n_refused, 3) << "the disk was never full";
+
+  EXPECT_EQ(add(100001), 201) << "there is room again";
+  started.serving->end(SIGKILL);
+  started.serving->begin();
+  for (const int i : acknowledged) EXPECT_EQ(add(i), 201) << "told again: " << i;
+  const auto list = Json::parse(started.call("GET", "/scenarios?limit=1000").body)["items"];
+  EXPECT_EQ(list.size(), acknowledged.size() + 1);
+}
+
+TEST(ElromServe, BacksUpWhatItServesAndRestoresIt) {
+  Started started;
+  const auto body = R"({"name": "a", "inputs": )" + Started::inputs() + "}";
+  started.call("POST", "/scenarios", body);
+  const auto backup = (started.folder / "backup").string(), again = (started.folder / "again").string();
+
+  const auto made = outcome_of(program + " --data " + started.data + " --backup " + backup);
+  const auto restored = outcome_of(program + " --data " + again + " --restore " + backup);
+
+  EXPECT_EQ(made.status, 0) << made.text;
+  EXPECT_THAT(made.text, HasSubstr("backed up: 4 rows, 0 files"));
+  EXPECT_EQ(restored.status, 0) << restored.text;
+  started.serving = std::make_unique<Serving>(program, std::vector<std::string>{"--data", again, "--quiet"});
+  EXPECT_EQ(*started.call("POST", "/scenarios", body).header("Idempotent-Replayed"), "true");
+  EXPECT_EQ(outcome_of(program + " --data " + again + " --restore " + backup + " 2>&1").status, 2);
 }
 
 TEST(ElromServe, TakesUpANewModelByItself) {

@@ -39,7 +39,7 @@ class Served {
         .model = folder.path(),
         .page = folder / "page",
         .predict_program = ELROM_BIN_DIR "/elrom-predict",
-        .judge_upload = [](const auto& file, const auto& mesh) { repository::judge_fields(file, mesh); },
+        .judge_upload = [](const auto& file, const auto& /*bundle*/) { repository::judge_fields(file, ""); },
         .anonymous = options.anonymous,
         .log =
             [this](const std::string& line) {

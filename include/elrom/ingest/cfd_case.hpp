@@ -32,7 +32,13 @@ struct CfdCase {
 /// of gas and parcels (equations in the source file).
 [[nodiscard]] CfdCase read_openfoam(const std::filesystem::path& directory);
 
-/// By what is there: a directory with constant/polyMesh, an HDF5 file, or text.
+/// What a simulation sent through a repository: a prediction file of all cells that names no bundle
+/// (masters/foreign_program.hpp). @throws InputError for one that does: a model does not learn from its own
+/// predictions
+[[nodiscard]] CfdCase read_simulation(const std::filesystem::path& path);
+
+/// By what is there: a directory with constant/polyMesh, an HDF5 file (an export, or a simulation sent
+/// through a repository), or text.
 [[nodiscard]] CfdCase read_case(const std::filesystem::path& path);
 
 }  // namespace elrom::ingest

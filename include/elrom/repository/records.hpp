@@ -65,6 +65,7 @@ struct ModelResult {
   std::string verdict, reason;  ///< the guard's, where the model has one
   std::string document;         ///< what the model says in numbers and words
   std::string fields;           ///< digest of its fields' file; empty: none
+  std::vector<Id> followed_by;  ///< runs that build on it
   double at = 0;
 };
 

@@ -46,8 +46,9 @@ struct RunFilter {
 struct Outcome {
   RunState state = RunState::done;  ///< done, failed, quarantined; waiting: to be tried again
   std::string reason;
-  double retry_after_s = 0;  ///< of waiting
-  ModelResult result;        ///< of done: version, verdict, reason, document, fields
+  double retry_after_s = 0;           ///< of waiting
+  ModelResult result;                 ///< of done: version, verdict, reason, document, fields
+  std::vector<std::string> ask = {};  ///< of done: models that are to work on the same inputs next
 };
 
 class Transaction {
@@ -75,6 +76,8 @@ class Transaction {
   std::optional<Run> claim(const std::string& model, const std::string& worker, double lease_s);
   /// @throws ConflictError when the lease is not (or no longer) the run's
   Run renew(Id run, const std::string& lease, double lease_s);
+  /// Models that the outcome asks for get a run that builds on the result, unless one of the same inputs
+  /// waits, runs or is done: that one then builds on it too.
   Run give_back(Id run, const std::string& lease, const Outcome& outcome);
   [[nodiscard]] Run run(Id id);
   [[nodiscard]] std::vector<Run> runs(const RunFilter& filter, const ListPart& part);
@@ -110,7 +113,10 @@ class Transaction {
   void keep_inputs(const Scenario& scenario);
   void update(Run& run);
   Run leased(Id run, const std::string& lease);
-  void keep_result(const Run& run, ModelResult result);
+  Id insert_run(const Run& run);
+  void follow(Id run, Id source);
+  Id keep_result(const Run& run, ModelResult result);
+  void ask(const std::string& model, const Run& after, Id result);
 
   Connection& connection_;
   double now_;

@@ -35,8 +35,8 @@ class OpenModel {
   [[nodiscard]] const std::vector<field::FieldInfo>& fields() const { return bundle_.info().fields; }
   /// Values of one field: planes x columns.
   [[nodiscard]] std::size_t n_cells() const { return bundle_.n_planes() * bundle_.n_columns(); }
-  [[nodiscard]] const std::string& name() const { return name_; }  ///< of the file: "3.elrom"
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  [[nodiscard]] std::string name() const { return file_.filename().string(); }  ///< "3.elrom"
   [[nodiscard]] bool has_intervals() const { return has_intervals_; }
   /// Read of the mesh when it is first asked for. @throws InputError for a broken mesh
   [[nodiscard]] const Cuts& cuts() const;
@@ -53,7 +53,6 @@ class OpenModel {
   model::BundleReader bundle_;
   model::Guard guard_;
   std::filesystem::path file_;
-  std::string name_;
   bool has_intervals_;
   std::vector<std::unique_ptr<model::Predictor>> plain_, with_intervals_;  //!< one a field
 

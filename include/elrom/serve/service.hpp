@@ -23,7 +23,9 @@ struct ServiceOptions {
   std::filesystem::path predict_program;  ///< elrom-predict, which writes files; empty: none are offered
   std::filesystem::path openfoam_case;    ///< that starts are made for; empty: none
   /// Looks at an uploaded file of fields, as repository::judge_fields() does, where its crash is no harm.
-  std::function<void(const std::filesystem::path& file, const std::string& mesh_digest)> judge_upload = {};
+  /// @param bundle whose mesh and furnace it must be of; empty: there is no model yet
+  std::function<void(const std::filesystem::path& file, const std::filesystem::path& bundle)> judge_upload =
+      {};
   std::optional<repository::Role> anonymous = {};  ///< of who brings no token; nothing: he may do nothing
   std::function<void(const std::string& line)> log = {};  ///< told of every request, a JSON object in a line
   std::size_t most_json_bytes = std::size_t{1} << 20;
@@ -49,10 +51,10 @@ class Service final : public http::Handler {
   std::unique_ptr<Impl> impl_;
 };
 
-/// For ServiceOptions::judge_upload: `program --judge-fields FILE --mesh DIGEST`, a process of its own, which
-/// ends with 0, or with another status and the reason in its last line. It has a minute.
+/// For ServiceOptions::judge_upload: `program --judge-fields FILE --model BUNDLE`, a process of its own,
+/// which ends with 0, or with another status and the reason in its last line. It has a minute.
 /// @throws InputError with that reason, or for a process that crashed
 void judge_in_process(const std::filesystem::path& program, const std::filesystem::path& file,
-                      const std::string& mesh_digest);
+                      const std::filesystem::path& bundle);
 
 }  // namespace elrom::serve
