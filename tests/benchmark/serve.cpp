@@ -1,6 +1,7 @@
 // bench-serve: elrom-serve under faults and under load. Calls are repeated, cut off, held back, and the
 // server is killed while they are on their way; afterwards every one must be there once. Then what fields
-// cost, up, down and predicted, and what many clients at once are told.
+// cost, up, down and predicted, how soon a page shows what a slider did, and what many clients at once are
+// told.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -504,6 +505,23 @@ Load load(const Place& place, const Json& inputs, double seconds) {
   return result;
 }
 
+/// From a key that moves a slider to the new picture, in a headless browser. null: there is none, or no page.
+Json slider(const std::string& bundle, const Options& options) {
+  const auto bin = sibling("elrom-serve").parent_path();
+  const auto outcome = test::outcome_of(
+      std::string("node '" ELROM_SOURCE_DIR "/tests/page/slider.mjs' '") + bin.string() + "' '" +
+      (bin.parent_path() / "page-packages").string() + "' '" + bundle + "' " + (options.small ? "4" : "22"));
+  const auto said = base::split(base::trim(outcome.text), '\n').back();
+  if (outcome.status != 0) {
+    fmt::print("slider not measured: {}\n", said);
+    return nullptr;
+  }
+  const auto figures = Json::parse(said);
+  fmt::print("slider to new picture in Chromium: median {:.0f} ms, 95 % within {:.0f} ms of {} presses\n",
+             figures["median_ms"].get<double>(), figures["p95_ms"].get<double>(), figures["n"].get<int>());
+  return figures;
+}
+
 Json measure_faults(const std::string& name, const std::string& database, const Options& options) {
   const auto calls = faulted_calls(database, options);
   fmt::print(
@@ -552,6 +570,9 @@ Json measure(const Options& options) {
   fmt::print("fields up and down {:.1f} ms; prediction of {} fields {:.2f} ms, over the wire {:.1f} ms\n",
              figures["fields_ms"].get<double>(), model.fields().size(),
              figures["prediction_ms"].get<double>(), figures["prediction_wire_ms"].get<double>());
+  const auto pictures = slider(bundle, options);
+  figures["slider_ms"] = pictures.is_null() ? Json() : pictures["median_ms"];
+  figures["slider"] = pictures;
   const auto busy = load(place, inputs, options.load_seconds());
   figures["clients"] = {{"n", busy.clients},           {"seconds", options.load_seconds()},
                         {"requests", busy.requests},   {"errors", busy.errors},

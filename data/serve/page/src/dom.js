@@ -16,7 +16,7 @@ export function table(headings, rows, empty) {
   if (rows.length === 0) return h("p", { class: "empty" }, empty);
   return h("div", { class: "scroll" },
     h("table", {},
-      h("thead", {}, h("tr", {}, headings.map((one) => h("th", { scope: "col" }, one)))),
+      h("thead", {}, h("tr", {}, headings.map((one) => h("th", { scope: "col", class: one.className || null }, one)))),
       h("tbody", {}, rows)));
 }
 

@@ -221,7 +221,7 @@ export class LiveView {
     const length = (i) => this.extent.high[i] - this.extent.low[i];
     const phone = width < 560;
     const beside = !phone && !this.reference ? length(1) : 0; // the view from above stands beside the other two
-    const margins = phone ? 2 * 66 * copies + 14 : (beside ? 3 : 2 * copies) * 48 + 100;
+    const margins = phone ? 2 * 58 * copies + 12 : (beside ? 3 : 2 * copies) * 48 + 100;
     const top = this.pictures.getBoundingClientRect().top + window.scrollY;
     const tall = phone ? 300 : Math.max(330, window.innerHeight - top - (this.reference ? 170 : 150));
     return Math.max(2.4, Math.min(tall / length(2), (width - margins) / (copies * (length(0) + length(1)) + beside)));

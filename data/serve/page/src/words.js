@@ -3,7 +3,7 @@ const small = { "gas velocity x": "Gas velocity, x", "gas velocity y": "Gas velo
   "solid velocity x": "Solids velocity, x", "solid velocity y": "Solids velocity, y", "solid velocity z": "Solids velocity, up",
   "solid volume fraction": "Solids volume fraction", "solid diameter": "Solids diameter", pressure: "Pressure" };
 
-export const plain = (name) => name.replaceAll("_", " ");
+export const plain = (name) => name.replaceAll("_", " ").replaceAll("+-", "±");
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 export const fieldLabel = (name) => small[plain(name)] ?? capital(plain(name));
 
