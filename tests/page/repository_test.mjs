@@ -32,11 +32,11 @@ test("an empty list says what to do", async () => {
 test("an operating point is saved, run, and opened again", async () => {
   const { page, faults } = await see("#live");
   await drawn(page);
-  await page.click(".menu summary");
+  await page.locator(".menu summary").click();
   await page.type("#scenario-name", "Night load");
-  await page.click(".menu form button");
+  await page.locator(".menu form button").click();
   await has(page, ".notice", "is saved");
-  await page.click("nav a[href='#scenarios']");
+  await page.locator("nav a[href='#scenarios']").click();
   await has(page, ".list", "Night load");
   await page.evaluate(() => [...document.querySelectorAll(".actions button")].find((one) => one.innerText === "Run ELROM").click());
   await has(page, ".detail", "waiting");
@@ -45,7 +45,7 @@ test("an operating point is saved, run, and opened again", async () => {
   await has(page, ".detail", "worked on by w1");
   await server.call("POST", `/runs/${claim.id}/outcome`, { lease: claim.lease, state: "done", result: { version: "abc", verdict: "inside", reason: "", document: { distance: 0.4 } } });
   await has(page, ".detail", "distance");
-  await page.click(".detail .primary");
+  await page.locator(".detail .primary").click();
   await drawn(page);
   assert.deepEqual(faults, []);
 });
@@ -91,9 +91,9 @@ test("an administrator promotes, and the live view has the new model", async () 
   page.on("dialog", (dialog) => dialog.accept());
   await page.evaluate(() => [...document.querySelectorAll(".list button")].find((one) => one.innerText === "Version 2").click());
   await page.waitForSelector("#promote");
-  await page.click("#promote");
+  await page.locator("#promote").click();
   await has(page, ".notice", "Version 2 answers now");
-  await page.click("nav a[href='#live']");
+  await page.locator("nav a[href='#live']").click();
   await drawn(page);
   assert.notEqual(await page.$("#input-flow_0"), null);
 });

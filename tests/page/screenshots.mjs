@@ -55,12 +55,12 @@ await picture("outside", {}, (page) => afterDrawing(page, () => slide(page, "#in
 await picture("compare", { height: 1000 }, async (page) => {
   await afterDrawing(page, () => page.select("#field", "gas_velocity_z"));
   await afterDrawing(page, () => slide(page, "#load", 0.45));
-  await page.click("#compare");
+  await page.locator("#compare").click();
   await afterDrawing(page, () => slide(page, "#load", 0.95));
   await page.$eval(".notice", (one) => one.remove());
 });
 await picture("space", {}, async (page) => {
-  await page.click("[data-tab=space]");
+  await page.locator("[data-tab=space]").click();
   await page.waitForSelector(".space-stage canvas");
   await new Promise((resolve) => setTimeout(resolve, 3000));
 });
