@@ -99,6 +99,19 @@ TEST_F(AtomicFileTest, RemainsOfTheDeadAreRemovedAndThoseOfTheLivingStay) {
   EXPECT_TRUE(fs::exists(folder_ / ".12.5.tmp"));
 }
 
+TEST_F(AtomicFileTest, RemainsOfOneTargetAreRemovedWhoeverLeftThem) {
+  const auto own = folder_ / (".a.txt." + std::to_string(::getpid()) + ".0.tmp");
+  const auto kept = {folder_ / "a.txt",          folder_ / ".b.txt.1.0.tmp", folder_ / "a.txt.1.0.tmp",
+                     folder_ / ".a.txt.x.0.tmp", folder_ / ".a.txt.1.x.tmp", folder_ / ".a.txt.1.0.bak"};
+  write_text(own, "half");
+  for (const auto& path : kept) write_text(path, "whole");
+
+  remove_remains(folder_ / "a.txt");
+
+  EXPECT_FALSE(fs::exists(own));
+  for (const auto& path : kept) EXPECT_TRUE(fs::exists(path)) << path;
+}
+
 TEST_F(AtomicFileTest, ReadingADirectoryIsAnInputError) {
   EXPECT_THROW((void)read_text(folder_), InputError);
 }

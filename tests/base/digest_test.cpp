@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "elrom/base/atomic_file.hpp"
 #include "elrom/base/random.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::base {
 namespace {
@@ -49,6 +51,15 @@ TEST(Sha256, OfEachStartsAndEndsAnywhere) {
                                      b = std::span(other).subspan(skipped);
     const std::span<const std::byte> both[] = {a, b};
     EXPECT_EQ(sha256_of_each(both), (std::vector{sha256(a), sha256(b)})) << skipped << " bytes in";
+  }
+}
+
+TEST(Sha256, OfAFileIsThatOfItsBytes) {
+  const test::TemporaryFolder folder;
+  for (const std::size_t size : {0UL, 1UL, 1UL << 20, (1UL << 20) + 7}) {
+    const std::string text(size, 'x');
+    write_text(folder / "file", text);
+    EXPECT_EQ(sha256_file(folder / "file"), of(text)) << size;
   }
 }
 

@@ -2,6 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
 #include "support/recording_log.hpp"
 
 namespace elrom {
@@ -26,6 +31,22 @@ TEST(ConsoleLog, TellsProgressAndMessages) {
 
   EXPECT_THAT(text, HasSubstr("an aside"));
   EXPECT_THAT(text, HasSubstr("import: 3/3 cases"));
+}
+
+TEST(ConsoleLog, ATaskThatEndsTellsItsRateAndOneThatBeginsSaysNothingYet) {
+  ::testing::internal::CaptureStderr();
+  const auto log = make_console_log(Level::info);
+  log->progress({.task = "count", .done = 2, .unit = "cases"});  // of how many is not known
+  log->progress({.task = "import", .done = 1, .total = 300, .unit = "cases"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  log->progress({.task = "import", .done = 300, .total = 300, .unit = "cases"});
+  const auto text = ::testing::internal::GetCapturedStderr();
+
+  double rate = 0;
+  ASSERT_EQ(std::sscanf(text.c_str(), "import: 300/300 cases, %lf/s, took ", &rate), 1) << text;
+  EXPECT_GT(rate, 1);
+  EXPECT_LT(rate, 30000.1);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 1) << text;
 }
 
 TEST(ConsoleLog, QuietOneTellsWarningsAlone) {

@@ -11,6 +11,7 @@ TEST(Text, ClosestNameFindsASlipOfThePen) {
   EXPECT_EQ(closest_name("primry_air", known), "primary_air");
   EXPECT_EQ(closest_name("burner_rigth", known), "burner_right");
   EXPECT_EQ(closest_name("pressure", known), std::nullopt);
+  EXPECT_EQ(closest_name("air_x", {"air", "air_y"}), "air_y");
 }
 
 TEST(Text, LettersInTheWrongOrderAreOneSlip) {
@@ -26,6 +27,7 @@ TEST(Text, MatchesShellPatterns) {
   EXPECT_TRUE(matches("anything", "*"));
   EXPECT_FALSE(matches("train_001", "load_*"));
   EXPECT_FALSE(matches("load", "load_*"));
+  EXPECT_FALSE(matches("bcdx", "*bcd*c*")) << "what a star has passed is not looked at again";
 }
 
 TEST(Text, NumbersReadBackExactly) {
@@ -41,6 +43,7 @@ TEST(Text, DurationsAreInTheUnitThatFits) {
   EXPECT_EQ(duration(59.9), "59.9 s");
   EXPECT_EQ(duration(61), "1 min 01 s");
   EXPECT_EQ(duration(3599), "59 min 59 s");
+  EXPECT_EQ(duration(3600), "1 h 00 min");
   EXPECT_EQ(duration(7500), "2 h 05 min");
 }
 
