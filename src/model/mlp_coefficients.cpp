@@ -59,7 +59,8 @@ void MlpCoefficients::predict(std::span<const double> inputs, std::span<double> 
 }
 
 void MlpCoefficients::save(io::TensorFile& file, const std::string& prefix) const {
-  file.set_text(prefix, nlohmann::json{{"kind", kind()}, {"scores", parts_.scores}}.dump());
+  file.set_text(
+      prefix, nlohmann::json{{"kind", kind()}, {"scores", parts_.scores}, {"recipe", parts_.recipe}}.dump());
   save_vector(file, prefix + "/input_mean", to_eigen(parts_.inputs.mean));
   save_vector(file, prefix + "/input_factor", to_eigen(parts_.inputs.factor));
   save_vector(file, prefix + "/input_relevance", to_eigen(parts_.inputs.relevance));
@@ -75,6 +76,7 @@ std::unique_ptr<CoefficientModel> MlpCoefficients::load(const io::TensorFile& fi
   Parts parts;
   try {
     parts.scores = description.at("scores").get<std::vector<double>>();
+    parts.recipe = description.value("recipe", "");
   } catch (const nlohmann::json::exception& error) {
     throw InputError(
         {"unreadable description of coefficient networks", file.where() + ":" + prefix, error.what()});

@@ -104,6 +104,25 @@ TEST(PodMlp, EveryBuildStopsOnAnotherFold) {
   EXPECT_THAT(trainer->n_train, ::testing::ElementsAre(20, 20, 20, 20, 20));
 }
 
+TEST(PodMlp, ARetrainingTakesTheRecipeOfTheEarlierModel) {
+  const LinearField field;
+  const auto first =
+      make_pod_mlp(std::make_shared<RidgeTrainer>(), {.most_modes = 3})->fit(field.data, field.rows(20), {});
+  io::TensorFile file;
+  first->save(file, "model");
+  const WarmStart warm{.parent = "digest", .model = model::load_field_model(file, "model")};
+  ASSERT_NE(warm.mlp(), nullptr);
+  EXPECT_FALSE(warm.mlp()->parts().recipe.empty());
+  const auto n_trainings = [&](const FitContext& context) {
+    const auto trainer = std::make_shared<RidgeTrainer>();
+    (void)make_pod_mlp(trainer, {.most_modes = 3, .builds = 4})->fit(field.data, field.rows(25), context);
+    return trainer->n_train.size();
+  };
+
+  EXPECT_EQ(n_trainings({.warm = &warm}), 4u);
+  EXPECT_EQ(n_trainings({}), 8u);
+}
+
 TEST(PodMlp, ReadsBackWhatItSaved) {
   const LinearField field;
   const auto model = make_pod_mlp(std::make_shared<RidgeTrainer>(), one_recipe({.most_modes = 3}))

@@ -156,13 +156,25 @@ class PodMlp final : public Method {
     return coefficients.cwiseAbs2().colwise().mean().transpose();
   }
 
+  /// The earlier model's alone, where it had one: which one it is costs the most and changes the least.
+  [[nodiscard]] std::vector<const PodMlpRecipe*> recipes(const FitContext& context) const {
+    const auto* earlier = context.warm == nullptr ? nullptr : context.warm->mlp();
+    std::vector<const PodMlpRecipe*> all;
+    for (const auto& recipe : options_.recipes) {
+      if (earlier != nullptr && !recipe.name.empty() && recipe.name == earlier->parts().recipe)
+        return {&recipe};
+      all.push_back(&recipe);
+    }
+    return all;
+  }
+
   /// By the recipe of the least error. @throws NumericalError when all fail
   [[nodiscard]] Built best_build(const field::FieldData& data, const Snapshots& snapshots,
                                  const MatrixD& coefficients, const FitContext& context) const {
     Built best;
     const Eigen::VectorXd energies = energies_of(coefficients);
-    for (const auto& recipe : options_.recipes) {
-      Built built = build(data, snapshots, coefficients, recipe, context);
+    for (const auto* recipe : recipes(context)) {
+      Built built = build(data, snapshots, coefficients, *recipe, context);
       if (built.parts.builds.empty()) continue;
       const bool better = best.recipe == nullptr || least_error(built.parts.variance, energies) <
                                                         least_error(best.parts.variance, energies);
@@ -180,6 +192,7 @@ class PodMlp final : public Method {
                             const FitContext& context) const {
     Built built{.parts = {}, .recipe = &recipe};
     auto& parts = built.parts;
+    parts.recipe = recipe.name;
     parts.inputs = model::InputScaler::fit(snapshots.inputs, options_.relevance);
     parts.scale = coefficient_scale(coefficients);
     Table table{MatrixF(snapshots.inputs.rows(), snapshots.inputs.cols()),
@@ -241,7 +254,8 @@ std::vector<PodMlpRecipe> pod_mlp_recipes() {
   smooth.weight_decay = 1e-4;
   smooth.batch_size = 16;
   smooth.learning_rate = 2e-3;
-  return {{noisy, {.max_epochs = 300, .patience = 40}}, {smooth, {.max_epochs = 2000, .patience = 150}}};
+  return {{noisy, {.max_epochs = 300, .patience = 40}, "noisy"},
+          {smooth, {.max_epochs = 2000, .patience = 150}, "smooth"}};
 }
 
 std::unique_ptr<Method> make_pod_mlp(std::shared_ptr<const networks::Trainer> trainer,

@@ -9,13 +9,15 @@
 namespace elrom::methods {
 namespace {
 
-const model::SmootherCoefficients* smoother_of(const model::FieldModel* model) {
+/// The coefficients of this type that the model is of, or a part of its blend.
+template <class Coefficients>
+const Coefficients* part_of(const model::FieldModel* model) {
   if (const auto* modes = dynamic_cast<const model::PodModel*>(model))
-    return dynamic_cast<const model::SmootherCoefficients*>(&modes->coefficients());
+    return dynamic_cast<const Coefficients*>(&modes->coefficients());
   const auto* blend = dynamic_cast<const model::BlendModel*>(model);
   if (blend == nullptr) return nullptr;
   for (const auto& member : blend->members())
-    if (const auto* found = smoother_of(member.model.get())) return found;
+    if (const auto* found = part_of<Coefficients>(member.model.get())) return found;
   return nullptr;
 }
 
@@ -27,6 +29,10 @@ std::vector<std::size_t> WarmStart::known_among(std::span<const std::size_t> row
   return both;
 }
 
-const model::SmootherCoefficients* WarmStart::smoother() const { return smoother_of(model.get()); }
+const model::SmootherCoefficients* WarmStart::smoother() const {
+  return part_of<model::SmootherCoefficients>(model.get());
+}
+
+const model::MlpCoefficients* WarmStart::mlp() const { return part_of<model::MlpCoefficients>(model.get()); }
 
 }  // namespace elrom::methods

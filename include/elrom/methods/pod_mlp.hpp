@@ -7,6 +7,8 @@
 // number of modes that leaves the least error of the field (a mode that is dropped errs by its energy).
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "elrom/methods/method.hpp"
 #include "elrom/networks/trainer.hpp"
@@ -17,6 +19,8 @@ namespace elrom::methods {
 struct PodMlpRecipe {
   networks::Hyperparameters hyperparameters;
   networks::TrainingBudget budget;
+  std::string name =
+      {};  ///< kept in the model, so that a retraining takes the same; empty: it tries all again
 };
 
 /// For noisy fields, where a short training is the best regulariser; and for smooth ones.

@@ -12,6 +12,7 @@
 
 #include "elrom/base/members.hpp"
 #include "elrom/model/field_model.hpp"
+#include "elrom/model/mlp_coefficients.hpp"
 #include "elrom/model/smoother_coefficients.hpp"
 
 namespace elrom::methods {
@@ -29,6 +30,8 @@ struct WarmStart {
   [[nodiscard]] std::vector<std::size_t> known_among(std::span<const std::size_t> rows) const;
   /// The kernel smoother that the model is, or that is a part of its blend; nullptr: it has none.
   [[nodiscard]] const model::SmootherCoefficients* smoother() const;
+  /// The coefficient networks that the model is, or that are a part of its blend; nullptr: it has none.
+  [[nodiscard]] const model::MlpCoefficients* mlp() const;
 };
 
 }  // namespace elrom::methods

@@ -2,6 +2,7 @@
 // Mode coefficients by a few small networks on all coefficients at once (peer "pod_mlp").
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "elrom/model/coefficient_model.hpp"
@@ -20,6 +21,7 @@ class MlpCoefficients final : public CoefficientModel {
     Eigen::VectorXd variance;  //!< of each coefficient's error on validation cases, (n_coefficients)
     std::vector<Network> builds;
     std::vector<double> scores;  //!< validation error of each build, (n_builds)
+    std::string recipe = {};     //!< by which they were trained, for who trains again; empty: not known
   };
   /// @throws InputError when the parts do not fit
   explicit MlpCoefficients(Parts parts);
