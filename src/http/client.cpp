@@ -81,11 +81,21 @@ struct Client::Impl {
     tcp().expires_after(milliseconds(options.timeout_seconds));
     tcp().async_connect(places, [&](beast::error_code got, const auto&) { fault = got; });
     run("cannot reach the server", fault);
+    expect_another();
     tcp().socket().set_option(asio::ip::tcp::no_delay(true), fault);
     if (!secure) return;
     SSL_set_tlsext_host_name(secure->native_handle(), url.host.c_str());
     secure->async_handshake(asio::ssl::stream_base::client, [&](beast::error_code got) { fault = got; });
     run("no trust in the server's certificate", fault);
+  }
+
+  /// Where nobody listens at a port that the system gives to callers, who calls may get that very port and meet
+  /// himself; the server could then not come back to it.
+  void expect_another() {
+    beast::error_code fault;
+    auto& socket = tcp().socket();
+    if (socket.local_endpoint(fault) == socket.remote_endpoint(fault))
+      fail("cannot reach the server", asio::error::connection_refused);
   }
 
   void make_tls() {

@@ -49,7 +49,7 @@ struct Options {
 /// A server with a folder and a token of its own, on a disk of its own where that may be mounted.
 struct Place {
   test::TemporaryFolder folder;
-  test::TinyDisk disk{folder / "disk", "1g"};
+  test::TinyDisk disk{folder / "disk", "100m"};
   std::string data = (folder / "disk/data").string();
   std::vector<std::string> arguments{"--data", data, "--quiet", "--requests-per-second", "1000000"};
   std::string token;
@@ -113,10 +113,10 @@ class Filler {
       : thread_([&place, this](const std::stop_token& stop) {
           base::Random random(base::Seed(12).derive("filler"));
           while (place.disk.mounted() && !stop.stop_requested()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1500 + random.below(1500)));
+            std::this_thread::sleep_for(std::chrono::milliseconds(800 + random.below(1500)));
+            ++n_times;
             const test::Ballast ballast(place.folder / "disk/ballast");
             std::this_thread::sleep_for(std::chrono::milliseconds(200));
-            ++n_times;
           }
         }) {}
   int n_times = 0;
@@ -306,7 +306,7 @@ class MasterProcess {
                 "--bundle",
                 bundle,
                 "--lease",
-                "2",
+                "1",
                 "--work",
                 (place.folder / "work").string()};
     begin();
@@ -315,6 +315,8 @@ class MasterProcess {
   MasterProcess(const MasterProcess&) = delete;
   MasterProcess& operator=(const MasterProcess&) = delete;
 
+  /// As its runs name it.
+  [[nodiscard]] std::string worker() const { return "master-" + std::to_string(process_); }
   void kill() {
     end();
     begin();
@@ -342,6 +344,18 @@ class MasterProcess {
   pid_t process_ = -1;
 };
 
+/// A master that has a run, somewhere on its way; a run loses two at most, or nobody would come to its end.
+bool kill_a_worker(const Place& place, std::span<MasterProcess> masters, base::Random& random) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(random.below(60)));
+  const auto running = place.all("/runs?state=running");
+  if (running.empty()) return false;
+  const auto& run = running[random.below(running.size())];
+  const auto victim = std::ranges::find(masters, run["worker"].get<std::string>(), &MasterProcess::worker);
+  if (victim == masters.end() || run["attempts"] > 2) return false;
+  victim->kill();
+  return true;
+}
+
 struct FaultedRuns {
   int of = 0, passed = 0, kills = 0;
   double seconds = 0;
@@ -367,20 +381,16 @@ FaultedRuns faulted_runs(const std::string& database, const std::string& bundle,
   }
   const Stopwatch clock;
   {
-    base::Random random(base::Seed(19).derive("masters"));
-    MasterProcess a(place, bundle), b(place, bundle), c(place, bundle);
-    const std::array masters{&a, &b, &c};
-    const auto n_open = [&] {
-      return place.all("/runs?state=waiting").size() + place.all("/runs?state=running").size();
+    std::array<MasterProcess, 3> masters{MasterProcess(place, bundle), MasterProcess(place, bundle),
+                                         MasterProcess(place, bundle)};
+    const auto is_open = [&] {
+      return !place.all("/runs?state=waiting").empty() || !place.all("/runs?state=running").empty();
     };
-    for (; n_open() > 0 && clock.seconds() < 600; ++result.kills) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(300 + random.below(700)));
-      masters[random.below(masters.size())]->kill();
-      if (result.kills % 4 == 3) {
+    for (base::Random random(base::Seed(19).derive("masters")); clock.seconds() < 600 && is_open();)
+      if (kill_a_worker(place, masters, random) && ++result.kills % 5 == 0) {
         place.serving->end(SIGKILL);
         place.serving->begin();
       }
-    }
   }
   result.seconds = clock.seconds();
   for (const auto& one : place.all("/scenarios")) {

@@ -41,8 +41,10 @@ class Ballast {
     std::FILE* const stream = std::fopen(file_.c_str(), "wb");
     if (stream == nullptr) return;
     std::setvbuf(stream, nullptr, _IONBF, 0);
-    const std::string block(512, 'x');
-    while (std::fwrite(block.data(), 1, block.size(), stream) == block.size()) {
+    for (const std::size_t size : {std::size_t{1} << 20, std::size_t{1} << 12, std::size_t{1}}) {
+      const std::string block(size, 'x');
+      while (std::fwrite(block.data(), 1, size, stream) == size) {
+      }
     }
     std::fclose(stream);
   }
