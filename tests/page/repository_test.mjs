@@ -32,6 +32,7 @@ test("an empty list says what to do", async () => {
 test("an operating point is saved, run, and opened again", async () => {
   const { page, faults } = await see("#live");
   await drawn(page);
+  assert.ok(await page.$eval("[data-format=openfoam]", (button) => button.disabled)); // no case to start was given
   await page.click(".menu summary");
   await page.type("#scenario-name", "Night load");
   await page.click(".menu form button");
