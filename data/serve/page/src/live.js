@@ -154,10 +154,11 @@ export class LiveView {
       while (this.again) {
         this.again = false;
         await this.fetch();
+        if (this.answer.head.model.digest !== this.model.digest) return this.shared.renew();
         this.draw();
       }
     } catch (error) {
-      this.showFault(error);
+      await this.showFault(error);
     } finally {
       this.busy = false;
     }
@@ -173,7 +174,10 @@ export class LiveView {
     Object.assign(this, { answer, polygons, asked, view });
   }
 
-  showFault(error) {
+  /// Another model may have taken the place of this one, with other inputs.
+  async showFault(error) {
+    const now = error.problem?.status === 422 && (await api.get("/model").catch(() => null));
+    if (now && now.digest !== this.model.digest) return this.shared.renew();
     this.verdict.replaceChildren(chip("bad", "not answered"), h("span", {}, error.message));
     this.verdict.className = "verdict bad";
     if (error.problem?.status === 401) this.shared.signIn();
