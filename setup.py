@@ -11,7 +11,7 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = Path(__file__).resolve().parent
-ONLY_PYTHON = [f"-DELROM_{name}=OFF" for name in ("TORCH", "MPI", "TESTS", "BENCHMARKS")]
+ONLY_PYTHON = [f"-DELROM_{name}=OFF" for name in ("TORCH", "MPI", "PAGE", "TESTS", "BENCHMARKS")]
 
 
 class CMakeBuild(build_ext):

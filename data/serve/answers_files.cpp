@@ -72,10 +72,11 @@ std::vector<std::string> command_of(const Desk& desk, const OpenModel& model, co
   return command;
 }
 
-/// What is in the folder of one case: its file, or the folder as an archive.
+/// The file of the one case, or its time folder as an archive, to be unpacked in the OpenFOAM case.
 std::string written(const fs::path& out) {
-  const auto only = fs::directory_iterator(out)->path();
-  return fs::is_directory(only) ? tar_of(only) : base::read_text(only);
+  const auto only = [](const fs::path& folder) { return fs::directory_iterator(folder)->path(); };
+  const auto one = only(out);
+  return fs::is_directory(one) ? tar_of(only(one)) : base::read_text(one);
 }
 
 http::Response file(Desk& desk, const Ask& ask) {

@@ -3,11 +3,12 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { afterDrawing, drawn, look, picture, serve, text } from "./browser.mjs";
 
 let server, view;
 before(async () => {
-  server = await serve();
+  server = await serve({ arguments: ["--openfoam-case", fileURLToPath(new URL("../../data/formats/instants/case", import.meta.url))] });
   view = await look({ url: server.url, token: server.tokens.reader });
   await drawn(view.page);
 });
@@ -65,26 +66,32 @@ test("two operating points stand side by side", async () => {
   await afterDrawing(view.page, () => slide("#load", 0.9));
 
   assert.notEqual(await picture(view.page, ".figure.x .reference canvas"), await picture(view.page, now));
-  await afterDrawing(view.page, () => view.page.click("#compare"));
+  await afterDrawing(view.page, () => view.page.click("#differ"));
   assert.equal(await view.page.$(".figure.x .reference:not([hidden])"), null);
+  assert.match(await text(view.page, ".readout"), /now − reference/);
+  const differing = await picture(view.page, now);
+  await afterDrawing(view.page, () => slide("#load", 0.3));
+  assert.notEqual(await picture(view.page, now), differing);
+  await afterDrawing(view.page, () => view.page.click("#compare"));
+  assert.equal(await view.page.$eval("#differ", (one) => one.parentElement.hidden), true);
 });
 
 test("files of every format that is offered come down", async () => {
   const folder = join(server.folder, "down");
   const client = await view.page.createCDPSession();
   await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
-  const names = ["hdf", "csv", "txt", "ip"];
+  const names = ["hdf", "csv", "txt", "ip", "openfoam"];
   for (const format of names) {
     await view.page.$eval(`[data-format=${format}]`, (button) => button.click());
-    await view.page.waitForFunction(() => document.querySelector(".notice")?.innerText === "The file is here.");
+    await view.page.waitForFunction(() => document.querySelector(".notice")?.innerText === "The file is here.", { timeout: 60000 });
     await view.page.$eval(".notice", (one) => one.remove());
   }
 
   for (let i = 0; i < 50 && readdirSync(folder).filter((one) => !one.endsWith(".crdownload")).length < names.length; ++i)
     await new Promise((resolve) => setTimeout(resolve, 100));
-  assert.deepEqual(readdirSync(folder).sort(), names.map((one) => `elrom.${one}`).sort());
+  assert.deepEqual(readdirSync(folder).sort(), ["elrom.csv", "elrom.hdf", "elrom.ip", "elrom.tar", "elrom.txt"]);
   assert.match(readFileSync(join(folder, "elrom.csv"), "utf8"), /^plane,column,x \[m\]/);
-  assert.ok(await view.page.$eval("[data-format=openfoam]", (button) => button.disabled));
+  assert.match(readFileSync(join(folder, "elrom.tar"), "latin1"), /^0\/U/);
 });
 
 test("three dimensions are drawn", async () => {

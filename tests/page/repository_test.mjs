@@ -32,6 +32,7 @@ test("an empty list says what to do", async () => {
 test("an operating point is saved, run, and opened again", async () => {
   const { page, faults } = await see("#live");
   await drawn(page);
+  assert.ok(await page.$eval("[data-format=openfoam]", (button) => button.disabled)); // no case to start was given
   await page.locator(".menu summary").click();
   await page.type("#scenario-name", "Night load");
   await page.locator(".menu form button").click();
@@ -85,7 +86,9 @@ test("a reader sees versions and may not promote", async () => {
   assert.deepEqual(faults, []);
 });
 
-test("an administrator promotes, and the live view has the new model", async () => {
+test("an administrator promotes, and every live view has the new model", async () => {
+  const other = (await see("#live", "reader")).page;
+  await drawn(other);
   const { page } = await see("#models");
   await has(page, ".list", "Version 2");
   page.on("dialog", (dialog) => dialog.accept());
@@ -96,4 +99,8 @@ test("an administrator promotes, and the live view has the new model", async () 
   await page.locator("nav a[href='#live']").click();
   await drawn(page);
   assert.notEqual(await page.$("#input-flow_0"), null);
+  await other.focus("#load");
+  await other.keyboard.press("ArrowRight");
+  await other.waitForSelector("#input-flow_0");
+  await has(other, ".notice", "Another model answers");
 });

@@ -59,6 +59,13 @@ await picture("compare", { height: 1000 }, async (page) => {
   await afterDrawing(page, () => slide(page, "#load", 0.95));
   await page.$eval(".notice", (one) => one.remove());
 });
+await picture("difference", {}, async (page) => {
+  await afterDrawing(page, () => page.select("#field", "gas_velocity_z"));
+  await page.click("#compare");
+  await afterDrawing(page, () => slide(page, "#load", 0.95));
+  await afterDrawing(page, () => page.click("#differ"));
+  await page.$eval(".notice", (one) => one.remove());
+});
 await picture("space", {}, async (page) => {
   await page.locator("[data-tab=space]").click();
   await page.waitForSelector(".space-stage canvas");

@@ -92,7 +92,7 @@ export class CutView {
   }
 
   drawAxes(context) {
-    const style = getComputedStyle(this.canvas);
+    const style = (this.style ??= getComputedStyle(this.canvas));
     const height = this.height / this.ratio, width = this.width / this.ratio;
     context.fillStyle = context.strokeStyle = style.color;
     context.font = `11px ${style.fontFamily}`;

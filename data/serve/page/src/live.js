@@ -29,7 +29,10 @@ export class LiveView {
     this.reference = null;
     this.build();
     if (shared.point) this.point.setNamed(shared.point.inputs, shared.point.load);
-    this.observer = new ResizeObserver(() => this.draw());
+    this.observer = new ResizeObserver(() => {
+      this.pixels = this.profileSize = null;
+      this.draw();
+    });
     this.observer.observe(this.pictures);
     this.refresh();
   }
@@ -64,18 +67,17 @@ export class LiveView {
     } }, this.model.fields.map((one) => h("option", { value: one.name, selected: one === this.field }, fieldLabel(one.name))));
     this.hold = h("input", { type: "checkbox", id: "hold", onchange: () => this.draw() });
     const tab = (name, text) => h("button", { type: "button", "aria-pressed": String(name === "cuts"), "data-tab": name, onclick: () => this.showTab(name) }, text);
-    this.log = h("input", { type: "checkbox", id: "log", onchange: () => {
-      this.hold.checked = false;
-      this.draw();
-    } });
+    this.log = h("input", { type: "checkbox", id: "log", onchange: () => this.arrange() });
     this.logLabel = h("label", { class: "check", for: "log", title: "Colours and profile by orders of magnitude" }, this.log, "Log scale");
     this.adoptField();
     this.tabs = h("div", { class: "segments", role: "group", "aria-label": "View" }, tab("cuts", "Cuts"), tab("space", "3-D"));
+    this.differ = h("input", { type: "checkbox", id: "differ", onchange: () => this.arrange() });
+    this.differLabel = h("label", { class: "check", for: "differ", hidden: true }, this.differ, "Difference");
     this.compareButton = h("button", { type: "button", id: "compare", onclick: () => this.toggleReference() }, "Compare with this");
     return h("div", { class: "toolbar" },
       h("label", { for: "field", class: "sr" }, "Field"), this.select, this.tabs,
       h("span", { class: "gap" }),
-      this.compareButton, this.saveMenu(), this.downloadMenu());
+      this.differLabel, this.compareButton, this.saveMenu(), this.downloadMenu());
   }
 
   /// What has a sign has no logarithm.
@@ -152,10 +154,11 @@ export class LiveView {
       while (this.again) {
         this.again = false;
         await this.fetch();
+        if (this.answer.head.model.digest !== this.model.digest) return this.shared.renew();
         this.draw();
       }
     } catch (error) {
-      this.showFault(error);
+      await this.showFault(error);
     } finally {
       this.busy = false;
     }
@@ -171,7 +174,10 @@ export class LiveView {
     Object.assign(this, { answer, polygons, asked, view });
   }
 
-  showFault(error) {
+  /// Another model may have taken the place of this one, with other inputs.
+  async showFault(error) {
+    const now = error.problem?.status === 422 && (await api.get("/model").catch(() => null));
+    if (now && now.digest !== this.model.digest) return this.shared.renew();
     this.verdict.replaceChildren(chip("bad", "not answered"), h("span", {}, error.message));
     this.verdict.className = "verdict bad";
     if (error.problem?.status === 401) this.shared.signIn();
@@ -191,9 +197,18 @@ export class LiveView {
   get answers() {
     return this.reference ? [this.reference.answer, this.answer] : [this.answer];
   }
+  get differs() {
+    return Boolean(this.reference) && this.differ.checked;
+  }
+  /// What the picture of a cut shows: the values of now, or how far they are above the reference's.
+  shown(i) {
+    const { values } = this.answer.parts[i];
+    return this.differs ? values.map((one, k) => one - this.reference.answer.parts[i].values[k]) : values;
+  }
 
   scale() {
     if (this.hold.checked && this.held) return this.held;
+    if (this.differs) return (this.held = rangeOf(axes.map((_, i) => this.shown(i)), "signed"));
     const how = isSigned(this.field.name) ? "signed" : this.log.checked ? "log" : "amount";
     this.held = rangeOf(this.answers.flatMap((answer) => answer.parts.map((part) => part.values)), how);
     return this.held;
@@ -205,7 +220,7 @@ export class LiveView {
     const { factor, unit } = shownUnit(this.field);
     this.showVerdict();
     this.bar.show(colours, factor, unit, fieldLabel(this.field.name));
-    if (!this.readoutBusy) this.readout.textContent = `${fieldLabel(this.field.name)} [${unit}]`;
+    if (!this.readoutBusy) this.readout.textContent = this.title(unit);
     if (this.spaceBox.hidden) {
       this.drawCuts(colours);
       this.drawProfile(factor, unit);
@@ -215,29 +230,43 @@ export class LiveView {
     performance.mark("drawn");
   }
 
+  title(unit) {
+    return `${fieldLabel(this.field.name)}${this.differs ? ", now − reference" : ""} [${unit}]`;
+  }
+
+  /// Pictures have other sizes, or show something else.
+  arrange() {
+    this.pixels = this.profileSize = null;
+    this.hold.checked = false;
+    this.draw();
+  }
+
   /// CSS pixels a metre, the same in all pictures: as large as they fit, on a wide screen without scrolling.
   pixelsPerMetre() {
-    const width = this.pictures.clientWidth, copies = this.reference ? 2 : 1;
+    const width = this.pictures.clientWidth, copies = this.reference && !this.differs ? 2 : 1;
     const length = (i) => this.extent.high[i] - this.extent.low[i];
     const phone = width < 560;
-    const beside = !phone && !this.reference ? length(1) : 0; // the view from above stands beside the other two
+    const beside = !phone && copies === 1 ? length(1) : 0; // the view from above stands beside the other two
     const margins = phone ? 2 * 58 * copies + 12 : (beside ? 3 : 2 * copies) * 48 + 100;
     const top = this.pictures.getBoundingClientRect().top + window.scrollY;
-    const tall = phone ? 300 : Math.max(330, window.innerHeight - top - (this.reference ? 170 : 150));
+    const tall = phone ? 300 : Math.max(330, window.innerHeight - top - (copies > 1 ? 170 : 150));
     return Math.max(2.4, Math.min(tall / length(2), (width - margins) / (copies * (length(0) + length(1)) + beside)));
   }
 
   drawCuts(colours) {
-    const scale = this.pixelsPerMetre();
+    const scale = (this.pixels ??= this.pixelsPerMetre()); // asks for the layout, which takes its time
     const lines = Object.fromEntries(axes.map((axis) => [axis, this.places["xyz".indexOf(axis)]]));
     axes.forEach((axis, i) => {
       const { views, range, text, holder, coordinate } = this[`figure_${axis}`];
       const [reference, now] = holder.children;
-      reference.hidden = !this.reference;
-      now.firstChild.hidden = !this.reference;
+      const pair = this.reference && !this.differs;
+      reference.hidden = !pair;
+      now.firstChild.hidden = !pair;
+      reference.firstChild.textContent = `Reference${loadText(this.reference?.point)}`;
+      now.firstChild.textContent = `Now${loadText(this.asked)}`;
       views.now.place(this.polygons[i], scale);
-      views.now.draw(this.answer.parts[i].values, colours, lines);
-      if (this.reference) {
+      views.now.draw(this.shown(i), colours, lines);
+      if (pair) {
         views.reference.place(this.polygons[i], scale);
         views.reference.draw(this.reference.answer.parts[i].values, colours, lines);
       }
@@ -249,11 +278,11 @@ export class LiveView {
 
   drawProfile(factor, unit) {
     const curve = ({ profile }) => ({ values: profile.values.map((one) => factor * one), half: profile.half?.map((one) => factor * one) });
-    const width = Math.max(230, this.profile.element.clientWidth || 300);
+    this.profileSize ??= { width: Math.max(230, this.profile.element.clientWidth || 300), height: this.profileHeight() };
     const level = this.answer.head.level;
     this.profileTitle.textContent = level ? `band: ${percent(level)} interval` : "";
     this.profile.show(this.extent.heights, { now: curve(this.answer), reference: this.reference && curve(this.reference.answer) },
-      { width, height: this.profileHeight(), least: this.held.how === "log" ? factor * this.held.low : undefined, unit: `${fieldLabel(this.field.name)} [${unit}]`, name: fieldLabel(this.field.name) });
+      { ...this.profileSize, least: this.held.how === "log" ? factor * this.held.low : undefined, unit: `${fieldLabel(this.field.name)} [${unit}]`, name: fieldLabel(this.field.name) });
   }
 
   /// Down to where the cuts beside it end.
@@ -263,7 +292,7 @@ export class LiveView {
   }
 
   spaceCuts() {
-    return this.polygons.map((polygons, i) => ({ polygons, values: this.answer.parts[i].values }));
+    return this.polygons.map((polygons, i) => ({ polygons, values: this.shown(i) }));
   }
 
   async showTab(name) {
@@ -296,13 +325,14 @@ export class LiveView {
     this.readoutBusy = i >= 0;
     const { factor, unit } = shownUnit(this.field);
     if (i < 0) {
-      this.readout.textContent = `${fieldLabel(this.field.name)} [${unit}]`;
+      this.readout.textContent = this.title(unit);
       return;
     }
     const answer = view === this[`figure_${view.axis}`].views.reference ? this.reference.answer : this.answer;
     const part = answer.parts[axes.indexOf(view.axis)];
-    const half = part.half ? ` ± ${number(factor * part.half[i])}` : "";
-    this.readout.textContent = `${number(factor * part.values[i])}${half} ${unit} at x ${number(point[0])}, y ${number(point[1])}, z ${number(point[2])} m`;
+    const half = part.half && !this.differs ? ` ± ${number(factor * part.half[i])}` : "";
+    const value = this.differs ? this.shown(axes.indexOf(view.axis))[i] : part.values[i];
+    this.readout.textContent = `${number(factor * value)}${half} ${unit} at x ${number(point[0])}, y ${number(point[1])}, z ${number(point[2])} m`;
   }
 
   moveCuts(view, point) {
@@ -315,8 +345,9 @@ export class LiveView {
   toggleReference() {
     this.reference = this.reference ? null : { point: this.asked, view: this.view, answer: this.answer };
     this.compareButton.textContent = this.reference ? "End comparison" : "Compare with this";
+    this.differLabel.hidden = !this.reference;
     if (this.reference) notice("Kept as the reference: now move a slider.");
-    this.draw();
+    this.arrange();
   }
 
   async save(name) {
@@ -340,6 +371,7 @@ export class LiveView {
   }
 }
 
+const loadText = (point) => (point?.load ? `, ${percent(point.load)}` : "");
 const capitalised = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 /// A button that opens a box below it; Escape and a click elsewhere close it.

@@ -2,7 +2,7 @@
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import * as api from "./api.js";
-import { h } from "./dom.js";
+import { h, notice } from "./dom.js";
 import { LiveView } from "./live.js";
 import { ModelsView } from "./models.js";
 import { QuarantineView } from "./quarantine.js";
@@ -17,6 +17,11 @@ const shared = {
   point: null, ///< operating point of the live view, while others are open
   may: (role) => shared.caller !== null && roles.indexOf(shared.caller.role) >= roles.indexOf(role),
   signIn: () => showSignIn(),
+  /// Another model answers.
+  renew() {
+    notice("Another model answers now.");
+    show();
+  },
   openPoint(scenario) {
     shared.point = { inputs: scenario.inputs, load: scenario.load };
     location.hash = "#live";

@@ -41,7 +41,7 @@ export class ModelsView {
       this.showDetail();
     };
     return h("tr", { class: one.number === this.chosen ? "chosen" : "", onclick: open },
-      h("td", {}, h("button", { type: "button", class: "link", onclick: open }, `Version ${one.number}`)),
+      h("td", {}, h("button", { type: "button", class: "link" }, `Version ${one.number}`)),
       h("td", {}, one.answers ? chip("done", "answers") : one.promoted ? chip("none", "answered before") : chip("edge", "kept back")),
       h("td", {}, one.by ?? "–"), h("td", { class: "number" }, one.cases ?? "–"),
       h("td", { class: "number" }, one.verdict ? `${number(one.verdict.before)} → ${number(one.verdict.after)}` : "–"),
@@ -55,6 +55,7 @@ export class ModelsView {
 
   async showDetail() {
     const one = await api.get(`/models/${this.chosen}`);
+    if (one.number !== this.chosen) return; // another was chosen meanwhile
     const accuracy = Object.entries(one.accuracy ?? {}).filter(([, of]) => of && typeof of === "object");
     this.detail.replaceChildren(h("section", { class: "panel" },
       h("h2", {}, `Version ${one.number}`),

@@ -27,11 +27,16 @@ export class ScenariosView {
     this.closed = true;
   }
 
+  /// Shows anew only what is new: whoever reads keeps his place.
   async load() {
     [this.scenarios, this.runs] = await Promise.all([api.list("/scenarios"), api.list("/runs")]);
-    if (!this.scenarios.some((one) => one.id === this.chosen)) this.chosen = this.scenarios[0]?.id;
-    this.showList();
-    await this.showDetail();
+    const seen = JSON.stringify([this.scenarios, this.runs]);
+    if (seen !== this.seen) {
+      this.seen = seen;
+      if (!this.scenarios.some((one) => one.id === this.chosen)) this.chosen = this.scenarios[0]?.id;
+      this.showList();
+      await this.showDetail();
+    }
     clearTimeout(this.timer);
     const open = this.runs.some((one) => one.state === "waiting" || one.state === "running");
     if (open && !this.closed) this.timer = setTimeout(() => this.load().catch(() => {}), period);
@@ -39,9 +44,8 @@ export class ScenariosView {
 
   row(one) {
     const last = this.runs.filter((run) => run.scenario === one.id)[0];
-    const open = () => this.choose(one.id);
-    return h("tr", { class: one.id === this.chosen ? "chosen" : "", onclick: open },
-      h("td", {}, h("button", { type: "button", class: "link", "aria-current": one.id === this.chosen ? "true" : null, onclick: open }, one.name)),
+    return h("tr", { class: one.id === this.chosen ? "chosen" : "", onclick: () => this.choose(one.id) },
+      h("td", {}, h("button", { type: "button", class: "link", "aria-current": one.id === this.chosen ? "true" : null }, one.name)),
       h("td", { class: "number" }, one.load === null ? "–" : percent(one.load)),
       h("td", {}, chip(one.verdict, one.verdict ?? "not judged")),
       h("td", {}, last ? [chip(last.state), ` ${last.model}`] : h("span", { class: "muted" }, "no run")),
