@@ -156,6 +156,17 @@ TEST(KernelMethod, BeatsThePeersOnASymmetricFurnace) {
     EXPECT_LT(kernel, test::unseen_error(*make_peer(peer), data)) << peer;
 }
 
+TEST(KernelMethod, TrustsASmoothFieldWhole) {
+  const field::CaseSet cases = test::toy_cases(30);
+  const field::FieldData data = test::toy_field(cases);
+
+  const double trusted = test::unseen_error(*make_kernel_method(), data);
+
+  // Left-out cases that were measured from another mean than their predictions were once came out 2 / (n - 1)
+  // too strong.
+  EXPECT_LT(trusted, 1.1 * test::unseen_error(*make_kernel_method({.shrink = false}), data));
+}
+
 TEST(KernelMethod, MirroredInputsGiveTheMirroredField) {
   const field::CaseSet cases = test::toy_cases(20);
   const auto model = make_kernel_method()->fit(test::toy_field(cases, 0.05), math::all_rows(20), {});
