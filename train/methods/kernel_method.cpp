@@ -76,6 +76,14 @@ struct Smoother {
     operation.diagonal().array() += 1;
     return operation;
   }
+  /// The same of departures from the mean of the others: each of them loses that mean.
+  [[nodiscard]] MatrixXd leave_one_out_about_mean() const {
+    MatrixXd operation = leave_one_out();
+    const VectorXd mean = operation.rowwise().sum() / static_cast<double>(operation.rows() - 1);
+    operation.colwise() -= mean;
+    operation.diagonal() += mean;
+    return operation;
+  }
 };
 
 struct Features {
@@ -296,10 +304,7 @@ Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, 
   for (int pass = 0; pass < passes; ++pass) {
     // An earlier kernel is near enough for the weights of the errors that the last search goes by.
     learned.kernel = pass == 0 ? first : fit_symmetric_kernel(z, used, gram, first.covariance, near);
-    MatrixXd left_out = Smoother(learned.kernel, z).leave_one_out();
-    left_out.array() += 1 / (n - 1);
-    left_out.diagonal().array() -= 1 / (n - 1);
-    MatrixF predicted = left_out.cast<float>() * centred;
+    MatrixF predicted = Smoother(learned.kernel, z).leave_one_out_about_mean().cast<float>() * centred;
     shrinkage.learn(predicted, truth, {}, n_threads);
     learned.residuals = truth - predicted;
     if (pass + 1 < passes) {

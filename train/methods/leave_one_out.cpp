@@ -111,13 +111,13 @@ double stationary_objective(const MatrixD& x, const MatrixXd& gram, math::Covari
   return value;
 }
 
-/// The objective per unit of the targets' size, so that tolerances mean the same for every field.
+/// The objective's logarithm, so that tolerances mean the same for every field, however well it is predicted.
 template <class F>
-math::Objective normalised(const F& objective, double size) {
-  return [&objective, size](const VectorXd& theta, VectorXd& gradient) {
-    const double value = objective(theta, gradient) / size;
-    gradient /= size;
-    return value;
+math::Objective logarithm(const F& objective) {
+  return [&objective](const VectorXd& theta, VectorXd& gradient) {
+    const double value = objective(theta, gradient) + std::numeric_limits<double>::min();
+    gradient /= value;
+    return std::log(value);
   };
 }
 
@@ -133,6 +133,21 @@ constexpr math::MinimiseOptions search{
 /// From a kernel of nearly the same cases: what more steps would gain is far below the scatter of the cases.
 constexpr math::MinimiseOptions search_nearby{
     .max_iterations = 15, .memory = 10, .gradient_tolerance = 1e-5, .value_tolerance = 1e-6};
+
+struct Bounds {
+  VectorXd lower, upper;
+};
+
+/// The least of what searches from each of `starts` find: a smooth field's error has several valleys.
+math::Minimum least(const math::Objective& objective, std::span<const VectorXd> starts, const Bounds& bounds,
+                    const math::MinimiseOptions& options) {
+  math::Minimum best{{}, std::numeric_limits<double>::infinity(), 0};
+  for (const VectorXd& start : starts) {
+    math::Minimum found = math::minimise(objective, start, bounds.lower, bounds.upper, options);
+    if (found.value < best.value || best.x.size() == 0) best = std::move(found);
+  }
+  return best;
+}
 
 VectorXd symmetric_start(const model::SmootherKernel& near, const std::vector<Index>& used) {
   VectorXd theta(static_cast<Index>(used.size()) + 2);
@@ -179,16 +194,15 @@ StationaryKernel fit_stationary_kernel(const MatrixD& x, const MatrixXd& gram, m
   const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
     return stationary_objective(x, gram, covariance, theta, gradient);
   };
-  math::Minimum best{{}, std::numeric_limits<double>::infinity(), 0};
+  std::vector<VectorXd> thetas;
   for (const auto& from : starts) {
-    VectorXd theta(n + 1);
+    VectorXd& theta = thetas.emplace_back(n + 1);
     for (Index j = 0; j < n; ++j) theta[j] = std::log(from.lengths[std::min(j, from.lengths.size() - 1)]);
     theta[n] = std::log(from.noise);
-    const math::Minimum found = math::minimise(normalised(objective, gram.trace()), theta,
-                                               logs(n, 0.3, {1e-8}), logs(n, 1e3, {100}), search);
-    if (found.value < best.value || best.x.size() == 0) best = found;
   }
-  StationaryKernel kernel{VectorXd(x.cols()), std::exp(best.x[n]), best.value * gram.trace()};
+  const math::Minimum best =
+      least(logarithm(objective), thetas, {logs(n, 0.3, {1e-8}), logs(n, 1e3, {100})}, search);
+  StationaryKernel kernel{VectorXd(x.cols()), std::exp(best.x[n]), std::exp(best.value)};
   for (Index j = 0; j < x.cols(); ++j) kernel.lengths[j] = std::exp(best.x[std::min(j, n - 1)]);
   return kernel;
 }
@@ -201,10 +215,11 @@ model::SmootherKernel fit_symmetric_kernel(const MatrixD& z, const std::vector<I
   const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
     return symmetric_objective(x, gram, covariance, theta, gradient);
   };
-  const math::Minimum best = math::minimise(
-      normalised(objective, gram.trace()),
-      near == nullptr ? logs(p, 4, {0.3, 0.3}) : symmetric_start(*near, used), logs(p, 0.5, {1e-3, 1e-8}),
-      logs(p, 200, {30, 100}), near == nullptr ? search : search_nearby);
+  std::vector<VectorXd> starts{logs(p, 4, {0.3, 0.3}), logs(p, 2, {0.3, 1e-4})};
+  if (near != nullptr) starts = {symmetric_start(*near, used)};
+  const math::Minimum best =
+      least(logarithm(objective), starts, {logs(p, 0.5, {1e-3, 1e-8}), logs(p, 200, {30, 100})},
+            near == nullptr ? search : search_nearby);
   model::SmootherKernel kernel{.covariance = covariance,
                                .linear = std::exp(best.x[p]),
                                .constant = mean_variance,
@@ -224,7 +239,7 @@ model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z, const model::Sm
     return antisymmetric_objective(a, o, gram, symmetric.covariance, theta, gradient);
   };
   const math::Minimum best = math::minimise(
-      normalised(objective, gram.trace()),
+      logarithm(objective),
       near == nullptr ? logs(p, 0.1, {1, 1, 1}) : antisymmetric_start(*near, symmetric, imbalances),
       logs(p, 1e-5, {1e-3, 0.2, 0.1}), logs(p, 10, {10, 30, 1e4}), near == nullptr ? search : search_nearby);
   model::SmootherKernel kernel{.antisymmetric = true,
