@@ -44,6 +44,10 @@ endfunction()
 # CLI11) is much the same: half the time from nothing, but more of it after one edit.
 function(elrom_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${ELROM_UNITY} UNITY_BUILD_BATCH_SIZE 7)
+  if(ELROM_UNITY)
+    # To the compiler all but one of them are headers, which should not use unnamed namespaces; they see each other's names.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage -Wno-shadow)
+  endif()
 endfunction()
 
 # The header of the libraries is of a target that links nothing: what one of them defines beside (fmt's FMT_HEADER_ONLY) must
