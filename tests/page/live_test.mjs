@@ -60,6 +60,15 @@ test("the pointer reads a value with its interval, and a click moves the other c
   assert.notEqual(await text(view.page, ".figure.z output"), before);
 });
 
+test("a cut shows the cells that it goes through", async () => {
+  const front = ".figure.y .one:not(.reference) canvas"; // its outline is the same everywhere
+  const before = await picture(view.page, front);
+
+  await afterDrawing(view.page, () => slide("#cut-y", 0.95));
+
+  assert.notEqual(await picture(view.page, front), before);
+});
+
 test("two operating points stand side by side", async () => {
   await view.page.click("#compare");
   await view.page.waitForSelector(".figure.x .reference:not([hidden])");
@@ -72,7 +81,12 @@ test("two operating points stand side by side", async () => {
   const differing = await picture(view.page, now);
   await afterDrawing(view.page, () => slide("#load", 0.3));
   assert.notEqual(await picture(view.page, now), differing);
-  await afterDrawing(view.page, () => view.page.click("#compare"));
+  await view.page.click("#compare");
+  await view.page.click("#compare"); // with itself
+  const box = await (await view.page.$(now)).boundingBox();
+  await view.page.mouse.move(box.x + 90, box.y + 90);
+  assert.match(await text(view.page, ".readout"), /^0 m/);
+  await view.page.click("#compare");
   assert.equal(await view.page.$eval("#differ", (one) => one.parentElement.hidden), true);
 });
 
@@ -97,14 +111,16 @@ test("files of every format that is offered come down", async () => {
 test("three dimensions are drawn", async () => {
   await view.page.click("[data-tab=space]");
   await view.page.waitForSelector(".space-stage canvas", { timeout: 60000 });
-  await new Promise((resolve) => setTimeout(resolve, 500));
   const stage = await view.page.$(".space-stage");
-  const first = (await stage.screenshot()).toString("base64");
   await stage.focus();
-  await view.page.keyboard.press("ArrowLeft");
-  await new Promise((resolve) => setTimeout(resolve, 500));
+  const turned = async () => {
+    await view.page.keyboard.press("ArrowLeft");
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+    return (await stage.screenshot()).toString("base64");
+  };
 
-  assert.notEqual((await stage.screenshot()).toString("base64"), first);
+  const first = await turned(); // what focus and the first picture do is over
+  assert.notEqual(await turned(), first);
   await view.page.click("[data-tab=cuts]");
 });
 
