@@ -1,5 +1,7 @@
 #include "elrom/http/server.hpp"
 
+#include <fcntl.h>
+
 #include <atomic>
 #include <condition_variable>
 #include <limits>
@@ -16,6 +18,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using Tcp = asio::ip::tcp;
+
+/// A program that is begun beside the server and outlives it would keep the port and its callers.
+template <class Socket>
+void keep_from_children(Socket& socket) {
+  ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
+}
 
 double seconds_now() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
@@ -371,6 +379,7 @@ struct Server::Impl {
     acceptor.emplace(*io);
     pause.emplace(*io);
     acceptor->open(endpoint.protocol());
+    keep_from_children(*acceptor);
     acceptor->set_option(asio::socket_base::reuse_address(true));
     beast::error_code fault;
     acceptor->bind(endpoint, fault);
@@ -387,6 +396,7 @@ struct Server::Impl {
     acceptor->async_accept([this](beast::error_code fault, Tcp::socket socket) {
       if (fault == asio::error::operation_aborted || shared.stopping) return;
       if (fault) return accept_later();
+      keep_from_children(socket);
       begin(std::move(socket));
       accept();
     });

@@ -535,7 +535,8 @@ Json measure_runs(const std::string& name, const std::string& database, const st
 std::string bundle_of(const Options& options, const test::TemporaryFolder& folder) {
   if (!options.bundle.empty()) return std::filesystem::absolute(options.bundle).string();
   const auto path = folder / "sample.elrom";
-  test::sample_bundle({.n_x = 20, .n_y = 42, .n_planes = 66, .n_inputs = 26, .n_submodels = 4, .n_units = 64})
+  test::sample_bundle(
+      {.n_x = 20, .n_y = 42, .n_planes = 66, .n_inputs = 26, .n_submodels = 4, .n_units = 64, .wave = 0.6})
       .write(path);
   return path.string();
 }
