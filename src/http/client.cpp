@@ -89,8 +89,8 @@ struct Client::Impl {
     run("no trust in the server's certificate", fault);
   }
 
-  /// Where nobody listens at a port that the system gives to callers, who calls may get that very port and meet
-  /// himself; the server could then not come back to it.
+  /// Where nobody listens at a port that the system gives to callers, who calls may get that very port and
+  /// meet himself; the server could then not come back to it.
   void expect_another() {
     beast::error_code fault;
     auto& socket = tcp().socket();

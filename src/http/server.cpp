@@ -1,5 +1,7 @@
 #include "elrom/http/server.hpp"
 
+#include <fcntl.h>
+
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -10,6 +12,12 @@
 
 namespace elrom::http {
 namespace {
+
+/// A program that is begun beside the server and outlives it would keep the port and its callers.
+template <class Socket>
+void keep_from_children(Socket& socket) {
+  ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
+}
 
 asio::ssl::context tls_context(const ServerOptions& options) {
   asio::ssl::context context(asio::ssl::context::tls_server);
@@ -80,6 +88,7 @@ struct Server::Impl {
     acceptor.emplace(*io);
     pause.emplace(*io);
     acceptor->open(endpoint.protocol());
+    keep_from_children(*acceptor);
     acceptor->set_option(asio::socket_base::reuse_address(true));
     beast::error_code fault;
     acceptor->bind(endpoint, fault);
@@ -96,6 +105,7 @@ struct Server::Impl {
     acceptor->async_accept([this](beast::error_code fault, Tcp::socket socket) {
       if (fault == asio::error::operation_aborted || shared.stopping) return;
       if (fault) return accept_later();
+      keep_from_children(socket);
       begin(std::move(socket));
       accept();
     });

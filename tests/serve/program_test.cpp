@@ -122,6 +122,27 @@ TEST(ElromServe, LooksAtUploadsInAProcessOfItsOwn) {
   EXPECT_EQ(started.call("GET", "/healthz").status, 200);
 }
 
+TEST(ElromServe, ItsChildrenHoldNeitherItsPortNorItsCallers) {
+  Started started;
+  const std::string mark = "/proc/" + std::to_string(started.serving->process()) + "/fd";
+  const http::Response answer = started.call("GET", "/healthz");
+  int n_sockets = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(mark)) {
+    std::error_code gone;
+    const auto what = std::filesystem::read_symlink(entry.path(), gone).string();
+    if (!what.starts_with("socket:")) continue;
+    std::ifstream info(std::filesystem::path(mark + "info") / entry.path().filename());
+    const std::string text(std::istreambuf_iterator<char>(info), {});
+    const auto at = text.find("flags:\t");
+    constexpr unsigned long closes_on_exec = 02000000;
+    EXPECT_NE(std::stoul(text.substr(at + 7), nullptr, 8) & closes_on_exec, 0U) << text;
+    ++n_sockets;
+  }
+
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_GT(n_sockets, 0);
+}
+
 TEST(ElromServe, RefusesFieldsThatPhysicsForbids) {
   Started started;
   const auto file = started.call("POST", "/predictions", R"({"inputs": )" + Started::inputs() + "}").body;

@@ -21,6 +21,7 @@ struct BundleSize {
   std::size_t n_submodels = 2, n_builds = 2, n_layers = 2, n_units = 8;
   bool half_precision = false;
   bool with_uncertainty = true;
+  double wave = 0;  ///< of the mean over the columns, in means: fields that the checks at the door let pass
 };
 
 inline io::Tensor random_tensor(base::Random& random, std::vector<std::size_t> shape, double scale) {
@@ -60,6 +61,9 @@ inline std::shared_ptr<const model::FieldModel> random_networks(const field::Fie
                         : info.unit == "1"      ? 0.05F
                                                 : 2.0F;
   parts.outputs.mean = MatrixF::Constant(1, columns, typical);
+  for (Eigen::Index c = 0; c < columns && size.wave > 0; ++c)
+    parts.outputs.mean(0, c) *= 1 + static_cast<float>(size.wave * std::sin(6.28 * static_cast<double>(c) /
+                                                                            static_cast<double>(columns)));
   parts.outputs.deviation = MatrixF::Constant(1, columns, 0.3F * typical);
   for (std::size_t s = 0; s < size.n_submodels; ++s) {
     model::Submodel submodel;
