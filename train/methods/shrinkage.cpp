@@ -50,10 +50,7 @@ Shrinkage::Shrinkage(std::optional<std::array<std::size_t, 3>> box) {
 
 void Shrinkage::learn(MatrixF& deviations, const MatrixF& truth, const Options& options, int n_threads) {
   if (!transform_) return;
-  if (options.spectral) {
-    learn_bands(deviations, truth, options.prior, n_threads);
-    apply_bands(deviations, n_threads);
-  }
+  if (options.spectral) learn_bands(deviations, truth, options.prior, n_threads);
   learn_cells(deviations, truth, options.prior);
   deviations.array().rowwise() *= cellwise_.transpose().array();
 }
@@ -63,22 +60,20 @@ void Shrinkage::apply(MatrixF& deviations, int n_threads) const {
   if (cellwise_.size() != 0) deviations.array().rowwise() *= cellwise_.transpose().array();
 }
 
-void Shrinkage::learn_bands(const MatrixF& deviations, const MatrixF& truth, double prior, int n_threads) {
+void Shrinkage::learn_bands(MatrixF& deviations, const MatrixF& truth, double prior, int n_threads) {
   const auto n = static_cast<std::size_t>(deviations.rows()),
              n_cells = static_cast<std::size_t>(deviations.cols());
   MatrixD products = MatrixD::Zero(deviations.rows(), static_cast<Eigen::Index>(n_bands_)),
           squares = products;
   base::parallel_for(n, n_threads, [&](std::size_t i, int) {
     const auto row = static_cast<Eigen::Index>(i);
-    MatrixF pair(2, deviations.cols());
-    pair.row(0) = deviations.row(row);
-    pair.row(1) = truth.row(row);
-    transform_->forward(row_span(pair, 0));
-    transform_->forward(row_span(pair, 1));
+    MatrixF true_row = truth.row(row);
+    transform_->forward(row_span(deviations, i));
+    transform_->forward(row_span(true_row, 0));
     for (std::size_t c = 0; c < n_cells; ++c) {
       const auto k = static_cast<Eigen::Index>(c), band = static_cast<Eigen::Index>(band_[c]);
-      products(row, band) += static_cast<double>(pair(0, k)) * pair(1, k);
-      squares(row, band) += static_cast<double>(pair(0, k)) * pair(0, k);
+      products(row, band) += static_cast<double>(deviations(row, k)) * true_row(0, k);
+      squares(row, band) += static_cast<double>(deviations(row, k)) * deviations(row, k);
     }
   });
   const Eigen::VectorXd product = products.colwise().sum().transpose(),
@@ -90,6 +85,7 @@ void Shrinkage::learn_bands(const MatrixF& deviations, const MatrixF& truth, dou
   for (std::size_t c = 0; c < n_cells; ++c) {
     spectral_[static_cast<Eigen::Index>(c)] = static_cast<float>(factor[static_cast<Eigen::Index>(band_[c])]);
   }
+  scale_back(deviations, n_threads);
 }
 
 void Shrinkage::learn_cells(const MatrixF& deviations, const MatrixF& truth, double prior) {
@@ -114,12 +110,17 @@ void Shrinkage::learn_cells(const MatrixF& deviations, const MatrixF& truth, dou
           .cast<float>();
 }
 
-void Shrinkage::apply_bands(MatrixF& deviations, int n_threads) const {
-  base::parallel_for(static_cast<std::size_t>(deviations.rows()), n_threads, [&](std::size_t i, int) {
-    transform_->forward(row_span(deviations, i));
-    deviations.row(static_cast<Eigen::Index>(i)).array() *= spectral_.transpose().array();
-    transform_->backward(row_span(deviations, i));
+void Shrinkage::scale_back(MatrixF& spectra, int n_threads) const {
+  base::parallel_for(static_cast<std::size_t>(spectra.rows()), n_threads, [&](std::size_t i, int) {
+    spectra.row(static_cast<Eigen::Index>(i)).array() *= spectral_.transpose().array();
+    transform_->backward(row_span(spectra, i));
   });
+}
+
+void Shrinkage::apply_bands(MatrixF& deviations, int n_threads) const {
+  base::parallel_for(static_cast<std::size_t>(deviations.rows()), n_threads,
+                     [&](std::size_t i, int) { transform_->forward(row_span(deviations, i)); });
+  scale_back(deviations, n_threads);
 }
 
 Eigen::VectorXd window_sums(const Eigen::VectorXd& values, const std::array<std::size_t, 3>& box,

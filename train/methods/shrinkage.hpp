@@ -31,9 +31,10 @@ class Shrinkage {
   void apply(MatrixF& deviations, int n_threads) const;
 
  private:
-  void learn_bands(const MatrixF& deviations, const MatrixF& truth, double prior, int n_threads);
+  void learn_bands(MatrixF& deviations, const MatrixF& truth, double prior, int n_threads);
   void learn_cells(const MatrixF& deviations, const MatrixF& truth, double prior);
   void apply_bands(MatrixF& deviations, int n_threads) const;
+  void scale_back(MatrixF& spectra, int n_threads) const;  ///< coefficients by their factors, then to cells
 
   std::optional<math::CosineTransform> transform_;
   std::vector<std::size_t> band_;  //!< of each coefficient, (n_cells)
