@@ -16,7 +16,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// A run of two spheres of group a and two of b, and of one section of two cells, as elrom-simulate would leave it.
+/// A run of two spheres of group a and two of b, and a section of two cells, as elrom-simulate leaves it.
 struct FakeRun {
   std::string model = "dem", scene = "two";
   double step = 1e-4, end = 1, seconds = 10, collisions = 100, resumed_from = 0;

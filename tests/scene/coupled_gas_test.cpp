@@ -47,8 +47,8 @@ double weight_per_area(const Simulation& simulation) {
   return mass_of(simulation.state().particles) * (1 - 1.184 / 1000) * 9.81 / 1e-4;
 }
 
-// Few parcels in many cells: by the number of parcels alone, the gas would cost a sixth. Another process may take
-// the machine at any time, in the trial or in the run: the shortest of some attempts are compared.
+// Few parcels in many cells: by the number of parcels alone, the gas would cost a sixth. Another process
+// may take the machine at any time, in the trial or in the run: the shortest of some attempts are compared.
 TEST(SceneCoupledGas, CostIsEstimatedWithinAFactorOfTwo) {
   double estimated = HUGE_VAL, measured = HUGE_VAL;
   for (int k = 0; k < 20; ++k) {

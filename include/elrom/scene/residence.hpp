@@ -22,7 +22,8 @@ struct ResidenceTimes {
   void add(double seconds);
   [[nodiscard]] std::int64_t number() const;
   [[nodiscard]] double mean() const;  ///< s; NaN for none
-  /// Time that a share of them stayed no longer than, s, to half a bin (6 %); NaN for none. @param share 0...1
+  /// Time that a share of them stayed no longer than, s, to half a bin (6 %); NaN for none.
+  /// @param share 0 ... 1
   [[nodiscard]] double quantile(double share) const;
   /// Where a bin begins, s. @param bin 0 ... n_bins
   [[nodiscard]] static double edge(std::size_t bin);

@@ -44,8 +44,8 @@ class Simulation {
   void step();
   /// Estimates are by the number of spheres; those of effects that work on cells too only after try_cells().
   [[nodiscard]] std::vector<EffectCost> costs() const;
-  /// Runs the first ten steps of a copy of this scene, where an effect works on cells, and keeps their cost for
-  /// the estimates: how often a gas iterates is not known beforehand.
+  /// Runs the first ten steps of a copy of this scene, where an effect works on cells, and keeps their cost
+  /// for the estimates: how often a gas iterates is not known beforehand.
   void try_cells();
   /// Of the movement, for people.
   [[nodiscard]] std::string text() const { return mover_->text(); }
