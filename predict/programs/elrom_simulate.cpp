@@ -1,6 +1,8 @@
 // elrom-simulate: spheres in a scene, with the effects that it names.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/app.hpp"
@@ -33,10 +35,26 @@ std::string cost_line(const scene::EffectCost& cost, bool measured) {
 }
 
 void explain(const scene::Simulation& simulation, bool measured) {
-  fmt::print("{} of {}:\n", measured ? "Measured" : "Effects, estimated on one thread",
-             simulation.settings().name);
+  fmt::print("{} of {}:\n", measured ? "Measured" : "Effects, estimated", simulation.settings().name);
   for (const auto& cost : simulation.costs()) fmt::print("{}", cost_line(cost, measured));
   if (measured && !simulation.text().empty()) fmt::print("  {}\n", simulation.text());
+}
+
+// Of NaN, null.
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json json_of_group(const scene::Simulation& simulation, std::size_t group) {
+  const auto& tally = simulation.state().tally;
+  const auto& residence = tally.residence[group];
+  return {
+      {"name", simulation.group_names()[group]},
+      {"spheres", std::ranges::count(simulation.state().particles.group, static_cast<std::int32_t>(group))},
+      {"wall_hits", tally.wall_hits_by_group[group]},
+      {"left", residence.number()},
+      {"mean_residence_s", number_or_null(residence.mean())},
+      {"residence_10_s", number_or_null(residence.quantile(0.1))},
+      {"residence_50_s", number_or_null(residence.quantile(0.5))},
+      {"residence_90_s", number_or_null(residence.quantile(0.9))}};
 }
 
 Json json_of(const scene::Simulation& simulation, const scene::SceneRun& run, int threads) {
@@ -61,6 +79,8 @@ Json json_of(const scene::Simulation& simulation, const scene::SceneRun& run, in
   json["left"] = tally.left;
   json["returned"] = tally.returned;
   json["skipped_collisions"] = tally.skipped;
+  for (std::size_t g = 0; g < simulation.group_names().size(); ++g)
+    json["groups"].push_back(json_of_group(simulation, g));
   for (const auto& cost : simulation.costs())
     json["effects"].push_back({{"name", cost.name},
                                {"bytes_estimated", cost.bytes_estimated},
@@ -69,6 +89,22 @@ Json json_of(const scene::Simulation& simulation, const scene::SceneRun& run, in
                                {"seconds", cost.seconds}});
   json["files"] = run.files;
   return json;
+}
+
+// A line a group, where spheres can leave.
+void report_groups(const scene::Simulation& simulation) {
+  const auto& state = simulation.state();
+  if (!simulation.domain().has_outlets()) return;
+  for (std::size_t g = 0; g < simulation.group_names().size(); ++g) {
+    const auto& residence = state.tally.residence[g];
+    const auto inside = std::ranges::count(state.particles.group, static_cast<std::int32_t>(g));
+    fmt::print("  {}: {} left", simulation.group_names()[g], residence.number());
+    if (residence.number() > 0)
+      fmt::print(" after {} s on average (a tenth within {} s, half {} s, nine tenths {} s)",
+                 base::rounded(residence.mean(), 3), base::rounded(residence.quantile(0.1), 3),
+                 base::rounded(residence.quantile(0.5), 3), base::rounded(residence.quantile(0.9), 3));
+    fmt::print(", {} inside; {} wall hits\n", inside, state.tally.wall_hits_by_group[g]);
+  }
 }
 
 void report(const scene::Simulation& simulation, const scene::SceneRun& run, const SimulateOptions& options) {
@@ -85,6 +121,7 @@ void report(const scene::Simulation& simulation, const scene::SceneRun& run, con
           ? fmt::format("; {} collisions of jammed spheres were skipped", state.tally.skipped)
           : "",
       run.steps, base::duration(run.seconds), options.threads, options.threads == 1 ? "" : "s", rate);
+  report_groups(simulation);
   fmt::print("Written: {}\n", options.output.string());
 }
 
@@ -93,12 +130,18 @@ int simulate(const SimulateOptions& options) {
   auto settings = scene::read_scene(options.scene, options.changes);
   if (options.small) settings.duration = std::min(settings.duration, 20 * settings.time_step);
   scene::Simulation simulation(settings, options.threads);
-  if (options.explain) explain(simulation, false);
+  if (options.explain) {
+    simulation.try_cells();
+    explain(simulation, false);
+  }
   const auto log = make_console_log();
   const auto done = scene::run(simulation, options.output, *log, base::interrupt_token());
   if (options.explain) explain(simulation, true);
-  if (!options.json.empty())
-    base::write_text(options.json, json_of(simulation, done, options.threads).dump(2) + "\n");
+  const auto summary = json_of(simulation, done, options.threads).dump(2) + "\n";
+  // Of a run that was whole before, the summary with its time stays.
+  const auto kept = options.output / "summary.json";
+  if (done.steps > 0 || !std::filesystem::exists(kept)) base::write_text(kept, summary);
+  if (!options.json.empty()) base::write_text(options.json, summary);
   report(simulation, done, options);
   return 0;
 }

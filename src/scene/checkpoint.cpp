@@ -64,6 +64,7 @@ void set_particles(io::TensorFile& file, const std::string& prefix, const Partic
   file.set(prefix + "id", row(reals(p.id)));
   file.set(prefix + "group", row(reals(p.group)));
   if (p.remembers_hits) file.set(prefix + "last_hit", row(p.last_hit));
+  if (p.remembers_birth) file.set(prefix + "born", row(p.born));
 }
 
 // @param p says whether spheres rotate and remember
@@ -78,6 +79,7 @@ Particles read_particles(const io::TensorFile& file, const std::string& prefix, 
   p.id = read_whole<std::int64_t>(file, prefix + "id", n);
   p.group = read_whole<std::int32_t>(file, prefix + "group", n);
   if (p.remembers_hits) p.last_hit = read_row(file, prefix + "last_hit", n);
+  if (p.remembers_birth) p.born = read_row(file, prefix + "born", n);
   if (p.are_parcels) p.weight = read_row(file, prefix + "weight", n);
   p.mass.clear(), p.contact.clear();
   for (std::size_t i = 0; i < n; ++i) {
@@ -103,6 +105,24 @@ std::vector<double> counts_of(const State& s) {
           static_cast<double>(t.added),     static_cast<double>(t.skipped), s.time};
 }
 
+// Of all groups one after another: counts of the bins, and the sum.
+std::vector<double> residence_row(const std::vector<ResidenceTimes>& groups) {
+  std::vector<double> values;
+  for (const auto& times : groups) {
+    values.insert(values.end(), times.counts.begin(), times.counts.end());
+    values.push_back(times.sum);
+  }
+  return values;
+}
+
+void read_residence(const std::vector<double>& values, std::vector<ResidenceTimes>& groups) {
+  auto at = values.begin();
+  for (auto& times : groups) {
+    for (auto& count : times.counts) count = static_cast<std::int64_t>(*at++);
+    times.sum = *at++;
+  }
+}
+
 }  // namespace
 
 io::TensorFile Simulation::save() {
@@ -116,6 +136,8 @@ io::TensorFile Simulation::save() {
   set_particles(file, "waiting_", particles_of(state_.waiting, state_.particles.are_parcels));
   file.set("counts", row(counts_of(state_)));
   file.set("collisions_by_groups", row(reals(state_.tally.by_groups)));
+  file.set("wall_hits_by_group", row(reals(state_.tally.wall_hits_by_group)));
+  file.set("residence", row(residence_row(state_.tally.residence)));
   file.set("placed", row(reals(placed_)));
   mover_->save(file);
   for (const auto& timed : effects_) timed.effect->save(file);
@@ -133,6 +155,7 @@ void Simulation::load(const io::TensorFile& file) {
   empty.rotates = settings_.rotation;
   empty.remembers_hits = state.particles.remembers_hits;
   empty.are_parcels = state.particles.are_parcels;
+  empty.remembers_birth = state.particles.remembers_birth;
   state.particles = read_particles(file, "", state.n_groups, empty);
   state.waiting.clear();
   const auto waiting = read_particles(file, "waiting_", state.n_groups, particles_of({}, empty.are_parcels));
@@ -140,13 +163,12 @@ void Simulation::load(const io::TensorFile& file) {
   const auto counts = read_row(file, "counts", n_counts);
   const auto whole = [&](std::size_t k) { return static_cast<std::int64_t>(counts[k]); };
   state.step = whole(0), state.next_id = whole(1), state.time = counts[8];
-  state.tally = {whole(2),
-                 whole(3),
-                 whole(4),
-                 whole(5),
-                 whole(6),
-                 whole(7),
-                 read_whole<std::int64_t>(file, "collisions_by_groups", state.tally.by_groups.size())};
+  auto& t = state.tally;
+  t.collisions = whole(2), t.wall_hits = whole(3), t.left = whole(4);
+  t.returned = whole(5), t.added = whole(6), t.skipped = whole(7);
+  t.by_groups = read_whole<std::int64_t>(file, "collisions_by_groups", t.by_groups.size());
+  t.wall_hits_by_group = read_whole<std::int64_t>(file, "wall_hits_by_group", t.wall_hits_by_group.size());
+  read_residence(read_row(file, "residence", t.residence.size() * (ResidenceTimes::n_bins + 1)), t.residence);
   const auto placed = read_whole<std::int64_t>(file, "placed", placed_.size());
   std::ranges::copy(placed, placed_.begin());  // effects hold on to the places
   state_ = std::move(state);

@@ -30,6 +30,7 @@ class CoupledGas final : public Effect {
     flow_.advance(dt, load_);
     push(state);
   }
+  [[nodiscard]] bool works_on_cells() const override { return true; }
   [[nodiscard]] std::size_t bytes() const override {
     std::size_t doubles = 0;
     for (std::size_t a = 0; a < 3; ++a) doubles += 4 * load_.solids[a].capacity();

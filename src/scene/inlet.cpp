@@ -86,7 +86,7 @@ class Inlet final : public Effect {
     const double share = std::min(1.0, (state.time + dt) / source_.over);
     const auto due =
         static_cast<std::int64_t>(std::floor(share * static_cast<double>(source_.number) + 1e-9));
-    if (due > placed_) inject(state, domain_, source_, seed_, due, placed_);
+    if (due > placed_) inject(state, domain_, source_, seed_, due, placed_, state.time + dt);
   }
 
  private:
@@ -96,7 +96,8 @@ class Inlet final : public Effect {
   std::int64_t& placed_;
 };
 
-void take_leaving(State& state, std::vector<Sphere>* into) {
+// @param now end of the step
+void take_leaving(State& state, double now, std::vector<Sphere>* into) {
   if (state.leaving.empty()) return;
   auto& p = state.particles;
   std::vector<std::uint8_t> keep(p.size(), 1);
@@ -104,6 +105,7 @@ void take_leaving(State& state, std::vector<Sphere>* into) {
     const auto at = static_cast<std::size_t>(i);
     if (into != nullptr) into->push_back(p.sphere(at));
     keep[at] = 0;
+    state.tally.residence[static_cast<std::size_t>(p.group[at])].add(now - p.born[at]);
   }
   p.keep_only(keep);
   state.tally.left += static_cast<std::int64_t>(state.leaving.size());
@@ -113,7 +115,7 @@ void take_leaving(State& state, std::vector<Sphere>* into) {
 class Outlet final : public Effect {
  public:
   Outlet() : Effect("outlet", Phase::exchange, 1, 1e-9) {}
-  void apply(State& state, double) override { take_leaving(state, nullptr); }
+  void apply(State& state, double dt) override { take_leaving(state, state.time + dt, nullptr); }
 };
 
 class Recirculation final : public Effect {
@@ -125,15 +127,15 @@ class Recirculation final : public Effect {
         velocity_(velocity),
         seed_(seed) {}
   // What left in this step waits for the next one.
-  void apply(State& state, double) override {
+  void apply(State& state, double dt) override {
     const auto before = std::move(state.waiting);
     state.waiting.clear();
-    if (!before.empty()) bring_back(state, before);
-    take_leaving(state, &state.waiting);
+    if (!before.empty()) bring_back(state, before, state.time + dt);
+    take_leaving(state, state.time + dt, &state.waiting);
   }
 
  private:
-  void bring_back(State& state, const std::vector<Sphere>& spheres) {
+  void bring_back(State& state, const std::vector<Sphere>& spheres, double now) {
     double largest = largest_of(state.particles);
     for (const auto& s : spheres) largest = std::max(largest, room_of(s.diameter, s.weight));
     Placer placer(state.particles, domain_, largest);
@@ -148,6 +150,7 @@ class Recirculation final : public Effect {
       placer.add(*place, radius);
       sphere.place = *place;
       sphere.velocity = velocity_;
+      sphere.born = now;
       sphere.id = state.next_id++;
       state.particles.add(sphere);
       ++state.tally.returned;
@@ -241,7 +244,7 @@ bool Placer::fits(const Vec& place, double radius) const {
 }
 
 std::int64_t inject(State& state, const Domain& domain, const Source& source, base::Seed seed,
-                    std::int64_t due, std::int64_t& placed) {
+                    std::int64_t due, std::int64_t& placed, double now) {
   std::vector<double> diameters;
   double largest = largest_of(state.particles), largest_new = 0;
   const auto stream = [&](std::int64_t number) {
@@ -265,7 +268,7 @@ std::int64_t inject(State& state, const Domain& domain, const Source& source, ba
     placer.add(*place, radius);
     const double u = random.normal(), v = random.normal(), w = random.normal();
     state.particles.add({*place, source.velocity + source.scatter * Vec{u, v, w}, diameter, source.density,
-                         state.next_id++, source.group, source.weight});
+                         state.next_id++, source.group, source.weight, now});
     ++placed;
     ++state.tally.added;
   }

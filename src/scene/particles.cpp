@@ -12,7 +12,8 @@ template <class P, class F>
 void for_each_array(P& p, const F& f) {
   for (auto* vectors : {&p.place, &p.velocity, &p.spin})
     for (auto& component : *vectors) f(component);
-  f(p.diameter), f(p.density), f(p.mass), f(p.id), f(p.group), f(p.last_hit), f(p.weight), f(p.contact);
+  f(p.diameter), f(p.density), f(p.mass), f(p.id), f(p.group), f(p.last_hit), f(p.weight), f(p.contact),
+      f(p.born);
 }
 
 }  // namespace
@@ -29,13 +30,20 @@ void Particles::add(const Sphere& s) {
   density.push_back(s.density);
   mass.push_back(s.weight * particle::sphere_mass(s.diameter, s.density));
   if (are_parcels) weight.push_back(s.weight), contact.push_back(s.diameter * std::sqrt(s.weight));
+  if (remembers_birth) born.push_back(s.born);
   id.push_back(s.id);
   group.push_back(s.group);
 }
 
 Sphere Particles::sphere(std::size_t i) const {
-  return {get(place, i), get(velocity, i),           diameter[i], density[i], id[i],
-          group[i],      are_parcels ? weight[i] : 1};
+  return {get(place, i),
+          get(velocity, i),
+          diameter[i],
+          density[i],
+          id[i],
+          group[i],
+          are_parcels ? weight[i] : 1,
+          remembers_birth ? born[i] : 0};
 }
 
 void Particles::keep_only(const std::vector<std::uint8_t>& keep) {

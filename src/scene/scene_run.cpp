@@ -129,6 +129,18 @@ std::string section_rows(const SectionSettings& section, const State& state, con
   return text;
 }
 
+std::string residence_table(const Simulation& simulation) {
+  std::string text = "group,from [s],to [s],number\n";
+  const auto& groups = simulation.state().tally.residence;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t bin = 0; bin < ResidenceTimes::n_bins; ++bin)
+      if (groups[g].counts[bin] > 0)
+        text += io::csv_cell(simulation.group_names()[g]) + "," +
+                joined({ResidenceTimes::edge(bin), ResidenceTimes::edge(bin + 1),
+                        static_cast<double>(groups[g].counts[bin])});
+  return text;
+}
+
 // The tables of a run, kept in its checkpoint so that they go on where it does.
 class Outputs {
  public:
@@ -158,6 +170,7 @@ class Outputs {
     put("series.csv", series_);
     for (std::size_t k = 0; k < sections_.size(); ++k)
       put("section_" + simulation_.settings().sections[k].name + ".csv", sections_[k]);
+    if (simulation_.domain().has_outlets()) put("residence.csv", residence_table(simulation_));
     if (!movie_.empty())
       put("particles.pvd",
           "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" + movie_ +

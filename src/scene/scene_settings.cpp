@@ -28,13 +28,10 @@ io::SettingsTable<BoxSettings> box_table() {
   t.vector(
        "high", "highest corner", [](auto& b) -> auto& { return b.high; }, "m")
       .require();
-  const auto pair = [](const std::vector<double>& v) { return v.empty() || v.size() == 2; };
-  t.numbers(
-      "top_low", "x, y of the top's low corner, m", [](auto& b) -> auto& { return b.top_low; }, pair,
-      "[x, y]");
-  t.numbers(
-      "top_high", "x, y of the top's high corner, m", [](auto& b) -> auto& { return b.top_high; }, pair,
-      "[x, y]");
+  t.quantities(
+      "top_low", "x, y of the top's low corner", [](auto& b) -> auto& { return b.top_low; }, "m", 2);
+  t.quantities(
+      "top_high", "x, y of the top's high corner", [](auto& b) -> auto& { return b.top_high; }, "m", 2);
   t.word("turn_axis", "turned about an axis", [](auto& b) -> auto& { return b.turn_axis; }, {"x", "y", "z"});
   t.quantity(
       "turn_angle", "by this angle, right-handed", [](auto& b) -> auto& { return b.turn_angle; }, "rad", -10,

@@ -82,13 +82,15 @@ MoverSettings mover_of(const SceneSettings& s, std::shared_ptr<const CellGrid> g
 // The mover as an effect of the list.
 class Collide final : public Effect {
  public:
-  Collide(const std::string& name, Mover& mover, double bytes, double seconds)
-      : Effect(name, Phase::motion, bytes, seconds), mover_(mover) {}
+  Collide(const std::string& name, Mover& mover, double bytes, double seconds, bool on_cells = false)
+      : Effect(name, Phase::motion, bytes, seconds), mover_(mover), on_cells_(on_cells) {}
+  [[nodiscard]] bool works_on_cells() const override { return on_cells_; }
   void apply(State& state, double dt) override { mover_.advance(state, dt); }
   [[nodiscard]] std::size_t bytes() const override { return mover_.bytes(); }
 
  private:
   Mover& mover_;
+  bool on_cells_;
 };
 
 // What a step costs, roughly: in dem so many steps of the law, each looking at some neighbours.
@@ -103,7 +105,7 @@ std::unique_ptr<Effect> motion(const SceneSettings& s, const MoverSettings& m, M
       return std::make_unique<Collide>(name, mover, 250, 6e-8 * std::max(1.0, s.time_step / step));
     }
     case Collisions::hel:
-      return std::make_unique<Collide>(name, mover, 220, 2e-6);
+      return std::make_unique<Collide>(name, mover, 220, 2e-6, true);
     case Collisions::helscm:
       return std::make_unique<Collide>(name, mover, 150, 1.5e-7);
     case Collisions::helscm_document:
@@ -143,6 +145,7 @@ Simulation::Simulation(SceneSettings settings, int n_threads)
   const auto m = mover_of(settings_, grid_, n_threads_);
   state_.particles.are_parcels = settings_.has_parcels();
   state_.particles.rotates = settings_.rotation;
+  state_.particles.remembers_birth = domain_.has_outlets();
   state_.particles.remembers_hits = m.collisions == Collisions::helscm && m.contact_time > 0;
   place_groups();
   add_forces();
@@ -193,8 +196,7 @@ void Simulation::place_groups() {
       source.weight = static_cast<double>(*g.number) / static_cast<double>(source.number);
     sources_.push_back(source);
   }
-  state_.n_groups = static_cast<std::int32_t>(group_names_.size());
-  state_.tally.by_groups.assign(group_names_.size() * group_names_.size(), 0);
+  state_.set_groups(group_names_.size());
   placed_.assign(sources_.size(), 0);
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     if (sources_[k].over > 0) continue;
@@ -286,13 +288,35 @@ void Simulation::step() {
                 .advice = "take a shorter time step"});
 }
 
+double Simulation::calls_a_step(const Effect& effect) const {
+  return effect.phase() == Phase::force && !mover_->takes_push() ? 2 : 1;
+}
+
+void Simulation::try_cells() {
+  const auto on_cells = [](const Timed& timed) { return timed.effect->works_on_cells(); };
+  if (std::ranges::none_of(effects_, on_cells)) return;
+  constexpr int n_steps = 5;
+  Simulation trial(settings_, n_threads_);
+  for (int k = 0; k < n_steps; ++k) trial.step();  // a gas that starts iterates more than one that flows
+  for (auto& timed : trial.effects_) timed.seconds = 0;
+  for (int k = 0; k < n_steps; ++k) trial.step();
+  const auto n = static_cast<double>(trial.state_.particles.size());
+  for (std::size_t k = 0; k < effects_.size(); ++k) {
+    const auto& effect = *effects_[k].effect;
+    if (!effect.works_on_cells()) continue;
+    const double call = trial.effects_[k].seconds / (n_steps * calls_a_step(effect));
+    effects_[k].cell_seconds = std::max(0.0, call - n * effect.seconds_a_sphere());
+  }
+}
+
 std::vector<EffectCost> Simulation::costs() const {
   std::int64_t number = 0;
   for (const auto& source : sources_) number += source.number;
   const auto n = static_cast<double>(number);
   const auto steps = static_cast<double>(settings_.n_steps());
   std::vector<EffectCost> costs{{.name = "particles",
-                                 .bytes_estimated = n * (settings_.rotation ? 108.0 : 84.0),
+                                 .bytes_estimated = n * ((settings_.rotation ? 108.0 : 84.0) +
+                                                         (state_.particles.remembers_birth ? 8.0 : 0.0)),
                                  .bytes = static_cast<double>(state_.particles.bytes())}};
   if (has_forces_) {
     double held = 0;
@@ -301,10 +325,10 @@ std::vector<EffectCost> Simulation::costs() const {
     costs.push_back({.name = "forces", .bytes_estimated = 24 * n, .bytes = held});
   }
   for (const auto& timed : effects_) {
-    const double calls = timed.effect->phase() == Phase::force && !mover_->takes_push() ? 2 : 1;
-    costs.push_back({timed.effect->name(), n * timed.effect->bytes_a_sphere(),
-                     n * steps * calls * timed.effect->seconds_a_sphere(),
-                     static_cast<double>(timed.effect->bytes()), timed.seconds});
+    costs.push_back(
+        {timed.effect->name(), n * timed.effect->bytes_a_sphere(),
+         steps * calls_a_step(*timed.effect) * (n * timed.effect->seconds_a_sphere() + timed.cell_seconds),
+         static_cast<double>(timed.effect->bytes()), timed.seconds});
   }
   return costs;
 }

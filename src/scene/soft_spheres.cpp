@@ -220,7 +220,7 @@ class SoftSpheres final : public Mover {
     const auto path = follow(domain_, settings_.walls, ball.place(), get(p.velocity, i), ball.radius, h);
     ball = {path.place.x, path.place.y, path.place.z, ball.radius};
     set(p.velocity, i, path.velocity);
-    state.tally.wall_hits += path.hits;
+    state.count_wall_hits(static_cast<std::size_t>(p.group[i]), path.hits);
   }
   [[nodiscard]] bool reflects() const { return settings_.walls.kind == Walls::reflect; }
 
@@ -322,7 +322,7 @@ class SoftSpheres final : public Mover {
       moment_[i] += moment;
     }
     force_[i] -= force;
-    if (is_new) ++state.tally.wall_hits;
+    if (is_new) state.count_wall_hits(static_cast<std::size_t>(p.group[i]), 1);
     wall_contacts_.push_back(contact);
   }
 

@@ -215,7 +215,7 @@ class Swept final : public Mover {
     if (is_resting(p, i, event.time)) law.normal_restitution = law.tangential_restitution = 1;
     set(p.velocity, i, reflected(get(p.velocity, i), *event.side, law));
     if (p.remembers_hits) p.last_hit[i] = begin_ + event.time;
-    ++state.tally.wall_hits;
+    state.count_wall_hits(static_cast<std::size_t>(p.group[i]), 1);
   }
 
   // Without loss.

@@ -13,7 +13,7 @@ constexpr std::size_t wall_block_size = 4096;
 constexpr int most_hits = 1000;  // of a sphere in a step: what is squeezed into a corner stays there
 
 struct Count {
-  std::int64_t hits = 0;
+  std::vector<std::int64_t> hits;  // by group
   std::vector<std::int32_t> left;
 };
 
@@ -43,17 +43,18 @@ void fly(State& state, const Domain& domain, const WallLaw& law, double dt, int 
   const std::size_t n_blocks = (p.size() + wall_block_size - 1) / wall_block_size;
   std::vector<Count> counts(n_blocks);
   base::parallel_for(n_blocks, n_threads, [&](std::size_t block, int) {
+    counts[block].hits.assign(state.tally.wall_hits_by_group.size(), 0);
     for (std::size_t i = block * wall_block_size; i < std::min(p.size(), (block + 1) * wall_block_size);
          ++i) {
       const auto path = follow(domain, law, get(p.place, i), get(p.velocity, i), 0.5 * p.diameter[i], dt);
       set(p.place, i, path.place);
       set(p.velocity, i, path.velocity);
-      counts[block].hits += path.hits;
+      counts[block].hits[static_cast<std::size_t>(p.group[i])] += path.hits;
       if (path.left) counts[block].left.push_back(static_cast<std::int32_t>(i));
     }
   });
   for (const auto& count : counts) {
-    state.tally.wall_hits += count.hits;
+    for (std::size_t g = 0; g < count.hits.size(); ++g) state.count_wall_hits(g, count.hits[g]);
     state.leaving.insert(state.leaving.end(), count.left.begin(), count.left.end());
   }
 }

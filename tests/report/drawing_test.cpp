@@ -169,5 +169,15 @@ TEST(Histogram, CountsOutliersInTheEndBins) {
   EXPECT_EQ(histogram.total(), 5u);
 }
 
+TEST(Svg, DotsAreOnePathAndLeaveOutWhatIsNoNumber) {
+  svg::Chart chart({.width = 110, .height = 110, .left = 0, .right = 10, .top = 10, .bottom = 0}, {"x", 0, 1},
+                   {"y", 0, 1}, "t");
+  chart.dots(std::vector{0.0, 0.5, std::nan("")}, std::vector{0.0, 1.0, 0.5}, "s0", "group");
+  chart.tile(0, 0.5, 0, 0.25, "#102030", "tip");
+  EXPECT_THAT(chart.text(), testing::HasSubstr("<path class=\"dots s0\" d=\"M0 110h0M50 10h0\">"));
+  EXPECT_THAT(chart.text(),
+              testing::HasSubstr("<rect fill=\"#102030\" x=\"0\" y=\"85\" width=\"50\" height=\"25\">"));
+}
+
 }  // namespace
 }  // namespace elrom::report

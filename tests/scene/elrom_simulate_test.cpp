@@ -39,6 +39,29 @@ TEST_F(ElromSimulate, WritesWhatItSaysAndExplainsItsEffects) {
   EXPECT_THAT(test::read_bytes(folder / "o" / "series.csv"), HasSubstr("collisions of a and a"));
 }
 
+// A box whose top is open, thrown through: spheres leave, and more come.
+TEST_F(ElromSimulate, ResidenceTimesAndWallHitsAreByGroupAndGoOnAfterAStop) {
+  const std::string open = " --set 'domain.outlets=[\"box.z_high\"]' --set 'effects.gravity=[0,0,0]'";
+  ASSERT_EQ(simulate(open + out("whole")).status, 0);
+  ASSERT_EQ(simulate(open + " --set scene.duration=0.02" + out("parts")).status, 0);
+  const auto told = simulate(open + out("parts"));
+  ASSERT_EQ(told.status, 0);
+  EXPECT_THAT(told.text, AllOf(HasSubstr("a: "), HasSubstr("left after"), HasSubstr("wall hits")));
+  for (const auto* name : {"residence.csv", "checkpoint.elrom"})
+    EXPECT_EQ(test::read_bytes(folder / "whole" / name), test::read_bytes(folder / "parts" / name)) << name;
+  EXPECT_THAT(test::read_bytes(folder / "whole" / "residence.csv"),
+              HasSubstr("group,from [s],to [s],number\na,"));
+  EXPECT_THAT(test::read_bytes(folder / "whole" / "summary.json"), HasSubstr("\"mean_residence_s\""));
+}
+
+TEST_F(ElromSimulate, SummaryOfAWholeRunStaysWhenItIsAskedForAgain) {
+  ASSERT_EQ(simulate(out("o")).status, 0);
+  const auto before = test::read_bytes(folder / "o" / "summary.json");
+  ASSERT_EQ(simulate(out("o")).status, 0);
+  EXPECT_EQ(test::read_bytes(folder / "o" / "summary.json"), before);
+  EXPECT_THAT(before, HasSubstr("\"resumed_from\": 0"));
+}
+
 TEST_F(ElromSimulate, KilledRunGoesOnToTheSameBytes) {
   ASSERT_EQ(simulate(out("whole")).status, 0);
   for (const auto* seconds : {"0.05", "0.15", "0.3"})

@@ -31,6 +31,19 @@ TEST(SceneSettings, UnitsAreTakenAnywhere) {
   EXPECT_EQ(s.n_steps(), 100);
 }
 
+TEST(SceneSettings, TopOfABoxTakesUnitsAndReadsBack) {
+  auto text = small_scene;
+  text.replace(text.find("[[particles]]"), 0,
+               "top_low = [\"1 mm\", 0.002]\ntop_high = [\"1.5 cm\", \"15 mm\"]\n");
+  const auto s = parse_scene(text, "s.toml");
+  EXPECT_DOUBLE_EQ(s.boxes[0].top_low[0], 0.001);
+  EXPECT_DOUBLE_EQ(s.boxes[0].top_low[1], 0.002);
+  EXPECT_DOUBLE_EQ(s.boxes[0].top_high[0], 0.015);
+  EXPECT_EQ(to_toml(parse_scene(to_toml(s), "again.toml")), to_toml(s));
+  text.replace(text.find("0.002]"), 6, "\"2 kg\"]");
+  EXPECT_ERROR(UsageError, "top_low", parse_scene(text, "s.toml"));
+}
+
 TEST(SceneSettings, WrittenSceneReadsBackToItself) {
   const auto text =
       to_toml(parse_scene(with("[effects]\ncollisions = \"dem\"\ngravity = [0, 0, -9.81]\n"), "s.toml"));

@@ -21,7 +21,7 @@ constexpr double pi = std::numbers::pi;
 inline State empty_state(bool rotates = false) {
   State state;
   state.particles.rotates = rotates;
-  state.tally.by_groups.assign(1, 0);
+  state.set_groups(1);
   return state;
 }
 

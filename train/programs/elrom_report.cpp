@@ -1,5 +1,5 @@
 // elrom-report: how good a study's model is, which of two is better, what more cases would buy,
-// and what accuracy costs; how good collision models are.
+// and what accuracy costs; how good collision models are; runs of a scene beside each other.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -19,6 +19,7 @@
 #include "elrom/report/cost.hpp"
 #include "elrom/report/learning_curve.hpp"
 #include "elrom/report/page.hpp"
+#include "elrom/report/scenes.hpp"
 
 namespace {
 
@@ -26,12 +27,13 @@ using namespace elrom;
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::vector<std::string> studies, against, fields, models, cases;
+  std::vector<std::string> studies, against, fields, models, cases, runs;
   std::string store, json, csv, html, method, collisions, a, b;
   report::Reference reference;
   int threads = 0, points = 5, repeats = 3;
   std::uint64_t seed = 1;
   std::size_t calls = 1'000'000;
+  std::optional<double> from;
   bool small = false, v1_v2 = false, quiet = false, no_peers = false, full = false;
 
   [[nodiscard]] int n_threads() const { return threads > 0 ? threads : base::available_threads(); }
@@ -126,6 +128,16 @@ int run_collisions(const Arguments& arguments, Log& log) {
   report::CollisionReportOptions options{.set = arguments.collisions, .n_calls = arguments.calls};
   options.models.assign(arguments.models.begin(), arguments.models.end());
   const auto report = report::collision_report(options, log, base::interrupt_token());
+  fmt::print("{}", report::terminal_table(report));
+  if (!arguments.json.empty()) write(arguments.json, report::to_json(report), log);
+  if (!arguments.html.empty()) write(arguments.html, report::html_page(report), log);
+  return 0;
+}
+
+int run_scenes(const Arguments& arguments, Log& log) {
+  report::SceneReportOptions options{.from = arguments.from};
+  options.folders.assign(arguments.runs.begin(), arguments.runs.end());
+  const auto report = report::scene_report(options);
   fmt::print("{}", report::terminal_table(report));
   if (!arguments.json.empty()) write(arguments.json, report::to_json(report), log);
   if (!arguments.html.empty()) write(arguments.html, report::html_page(report), log);
@@ -241,8 +253,24 @@ void add_collisions(cli::App& app, Arguments& arguments) {
   command.add_flag("--quiet", arguments.quiet, "no progress, only results and warnings");
 }
 
+void add_scenes(cli::App& app, Arguments& arguments) {
+  auto& command = *app.add_subcommand(
+      "scenes",
+      "Runs of one scene by several collision models and time steps beside each other, DEM as the yardstick");
+  command.add_option("runs", arguments.runs, "folders that elrom-simulate wrote (--output)")->required();
+  command.add_option("--json", arguments.json, "write all figures as JSON");
+  command.add_option("--html", arguments.html, "write the page: one file that opens offline");
+  command
+      .add_option("--from", arguments.from,
+                  "sections are averaged from this time on [s]; default: half of the first run")
+      ->check(cli::NonNegativeNumber);
+  command.add_flag("--small", arguments.small,
+                   "accepted for scripts: this command ends within a minute anyway");
+  command.add_flag("--quiet", arguments.quiet, "no progress, only results and warnings");
+}
+
 int run(int argc, char** argv) {
-  cli::App app(R"(Reports on trained ELROM studies and collision models.
+  cli::App app(R"(Reports on trained ELROM studies, collision models and simulated scenes.
 Exit status: 2 usage, 3 input, 5 numerical, 7 B is worse than A (compare), 130 interrupted.)",
                "elrom-report");
   app.set_version_flag("--version", program_version());
@@ -253,6 +281,7 @@ Exit status: 2 usage, 3 input, 5 numerical, 7 B is worse than A (compare), 130 i
   add_learning_curve(app, arguments);
   add_cost(app, arguments);
   add_collisions(app, arguments);
+  add_scenes(app, arguments);
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto log = make_console_log(arguments.quiet ? Level::warning : Level::info);
   for (const auto& file : {arguments.json, arguments.csv, arguments.html})
@@ -261,6 +290,7 @@ Exit status: 2 usage, 3 input, 5 numerical, 7 B is worse than A (compare), 130 i
   if (app.got_subcommand("compare")) return run_compare(arguments, *log);
   if (app.got_subcommand("learning-curve")) return run_learning_curve(arguments, *log);
   if (app.got_subcommand("collisions")) return run_collisions(arguments, *log);
+  if (app.got_subcommand("scenes")) return run_scenes(arguments, *log);
   return run_cost(arguments, *log);
 }
 

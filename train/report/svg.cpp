@@ -82,6 +82,23 @@ void Chart::box(double x_low, double x_high, double y_low, double y_high, std::s
                        opacity < 1 ? fmt::format(" opacity=\"{:.3f}\"", opacity) : "", tip_element(tip));
 }
 
+void Chart::dots(std::span<const double> x, std::span<const double> y, std::string_view css_class,
+                 std::string_view name) {
+  std::string path;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (std::isfinite(x_.fraction(x[i])) && std::isfinite(y_.fraction(y[i])))
+      path += fmt::format("M{} {}h0", number(px(x[i])), number(py(y[i])));
+  body_ += fmt::format("<path class=\"dots {}\" d=\"{}\">{}</path>", css_class, path, tip_element(name));
+}
+
+void Chart::tile(double x_low, double x_high, double y_low, double y_high, std::string_view colour,
+                 std::string_view tip) {
+  const double left = px(x_low), top = py(y_high);
+  body_ += fmt::format("<rect fill=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\">{}</rect>", colour,
+                       number(left), number(top), number(std::max(0.0, px(x_high) - left)),
+                       number(std::max(0.0, py(y_low) - top)), tip_element(tip));
+}
+
 void Chart::label(double x, double y, std::string_view text, std::string_view anchor) {
   const double shift = anchor == "end" ? -7 : anchor == "start" ? 7 : 0;
   body_ += fmt::format("<text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>",

@@ -55,6 +55,12 @@ class Chart {
   /// A filled rectangle in data coordinates.
   void box(double x_low, double x_high, double y_low, double y_high, std::string_view css_class,
            std::string_view tip, double opacity = 1);
+  /// Many small dots of one class as a single path; values that are not finite are left out.
+  void dots(std::span<const double> x, std::span<const double> y, std::string_view css_class,
+            std::string_view name);
+  /// A rectangle in data coordinates of a colour of its own, "#rrggbb".
+  void tile(double x_low, double x_high, double y_low, double y_high, std::string_view colour,
+            std::string_view tip);
   /// Text beside a data point.
   void label(double x, double y, std::string_view text, std::string_view anchor = "start");
   /// Whole <svg> element, with axes.

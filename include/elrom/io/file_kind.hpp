@@ -51,8 +51,9 @@ inline constexpr FileKind collision_training{
 inline constexpr FileKind collision_report{
     "elrom-collision-report", {1, 0}, "report again with elrom-report collisions"};
 inline constexpr FileKind scene_checkpoint{
-    "elrom-scene-checkpoint", {1, 0}, "remove it and simulate again with elrom-simulate"};
-inline constexpr FileKind scene_summary{"elrom-scene", {1, 0}, "simulate again with elrom-simulate"};
+    "elrom-scene-checkpoint", {2, 0}, "remove it and simulate again with elrom-simulate"};
+inline constexpr FileKind scene_summary{"elrom-scene", {1, 1}, "simulate again with elrom-simulate"};
+inline constexpr FileKind scene_report{"elrom-scene-report", {1, 0}, "report again with elrom-report scenes"};
 inline constexpr FileKind repository{"elrom-repository", {1, 0}, "restore it from a backup"};
 
 inline constexpr std::array all{mesh,
@@ -79,6 +80,7 @@ inline constexpr std::array all{mesh,
                                 collision_report,
                                 scene_checkpoint,
                                 scene_summary,
+                                scene_report,
                                 repository};
 }  // namespace kinds
 

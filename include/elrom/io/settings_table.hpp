@@ -79,6 +79,16 @@ class SettingsTable {
                   return toml_text(std::vector<double>{x, y, z});
                 }});
   }
+  /// n of such, or none: []. @param member a list; not written where it is empty
+  template <class Member>
+  Row& quantities(std::string key, std::string meaning, Member member, std::string si, std::size_t n) {
+    return add({std::move(key), std::move(meaning),
+                [=](S& s, const SettingValue& value) {
+                  const bool none = value.list() != nullptr && value.list()->empty();
+                  member(s) = none ? std::vector<double>{} : read_quantities(value, si, n);
+                },
+                [=](const S& s) { return member(s).empty() ? std::string() : toml_text(member(s)); }});
+  }
   template <class Member>
   Row& flag(std::string key, std::string meaning, Member member) {
     return simple(std::move(key), std::move(meaning), member, read_flag);

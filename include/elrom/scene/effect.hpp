@@ -27,6 +27,8 @@ class Effect {
         seconds_a_sphere_(seconds_a_sphere) {}
   virtual ~Effect() = default;
   virtual void apply(State& state, double dt) = 0;
+  /// Whether a step costs something by the cells of the grid too, which only trying tells.
+  [[nodiscard]] virtual bool works_on_cells() const { return false; }
   /// Held now, beyond the spheres' own arrays.
   [[nodiscard]] virtual std::size_t bytes() const { return 0; }
   virtual void save(io::TensorFile&) const {}

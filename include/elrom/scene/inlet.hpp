@@ -62,10 +62,10 @@ class Placer {
   std::unique_ptr<Grid> grid_;
 };
 
-/// Adds what the source has due at a time. @param placed of it so far, updated
+/// Adds what the source has due at a time. @param placed of it so far, updated @param now of their birth, s
 /// @return how many found no room and are still due
 std::int64_t inject(State& state, const Domain& domain, const Source& source, base::Seed seed,
-                    std::int64_t due, std::int64_t& placed);
+                    std::int64_t due, std::int64_t& placed, double now = 0);
 
 /// Injects over time. What finds no room comes later.
 [[nodiscard]] std::unique_ptr<Effect> inlet(const Domain& domain, const Source& source, base::Seed seed,

@@ -24,6 +24,7 @@
 #include "elrom/particle/kinetic_theory.hpp"
 #include "elrom/scene/cell_grid.hpp"
 #include "elrom/scene/particles.hpp"
+#include "elrom/scene/residence.hpp"
 
 namespace elrom::scene {
 
@@ -54,6 +55,8 @@ struct Tally {
   std::int64_t added = 0;
   std::int64_t skipped = 0;             ///< collisions not computed, where spheres are jammed (helscm)
   std::vector<std::int64_t> by_groups;  ///< collisions of group a with b >= a: a n_groups + b
+  std::vector<std::int64_t> wall_hits_by_group;
+  std::vector<ResidenceTimes> residence;  ///< by group, of those that left
 };
 
 /// A scene at an instant.
@@ -68,6 +71,16 @@ struct State {
   std::vector<Sphere> waiting;        ///< left, and not back yet
   Tally tally;
 
+  void set_groups(std::size_t n) {
+    n_groups = static_cast<std::int32_t>(n);
+    tally.by_groups.assign(n * n, 0);
+    tally.wall_hits_by_group.assign(n, 0);
+    tally.residence.assign(n, {});
+  }
+  void count_wall_hits(std::size_t group, std::int64_t hits) {
+    tally.wall_hits += hits;
+    tally.wall_hits_by_group[group] += hits;
+  }
   void count_collision(std::size_t i, std::size_t j) {
     ++tally.collisions;
     const auto a = std::min(particles.group[i], particles.group[j]),

@@ -40,6 +40,7 @@ struct Sphere {
   std::int64_t id = 0;
   std::int32_t group = 0;
   double weight = 1;  ///< spheres that a parcel stands for
+  double born = 0;    ///< s, when it came into the domain
 };
 
 struct Particles {
@@ -53,7 +54,8 @@ struct Particles {
   std::vector<double> last_hit;  ///< s, when a sphere last collided; empty unless a collision model asks
   /// Spheres that each parcel stands for, all of its diameter; empty where all are spheres.
   std::vector<double> weight;
-  bool rotates = false, remembers_hits = false, are_parcels = false;
+  std::vector<double> born;  ///< s, when each came; empty where none can leave
+  bool rotates = false, remembers_hits = false, are_parcels = false, remembers_birth = false;
 
   [[nodiscard]] std::size_t size() const { return id.size(); }
   /// At which two of them collide, m: a parcel of w spheres at d sqrt(w), so that between its collisions it

@@ -5,6 +5,7 @@
 //   DIR/checkpoint.elrom     the state; a run that was killed goes on from it and gives the same bytes
 //   DIR/series.csv           a row an output: spheres, mass, energy, collisions ...
 //   DIR/section_<name>.csv   sums over the cells of each section, by output
+//   DIR/residence.csv        how long the spheres that left had stayed, by group; where there are outlets
 //   DIR/particles.pvd        a movie for ParaView of DIR/particles_<step>.vtp
 //   DIR/scene.toml           the resolved settings
 //

@@ -42,7 +42,11 @@ class Simulation {
 
   /// One time step. @throws NumericalError where something is no number any more
   void step();
+  /// Estimates are by the number of spheres; those of effects that work on cells too only after try_cells().
   [[nodiscard]] std::vector<EffectCost> costs() const;
+  /// Runs the first ten steps of a copy of this scene, where an effect works on cells, and keeps their cost
+  /// for the estimates: how often a gas iterates is not known beforehand.
+  void try_cells();
   /// Of the movement, for people.
   [[nodiscard]] std::string text() const { return mover_->text(); }
 
@@ -55,6 +59,7 @@ class Simulation {
   struct Timed {
     std::unique_ptr<Effect> effect;
     double seconds = 0;
+    double cell_seconds = 0;  // of a call, estimated: what the spheres do not account for
   };
   void add(std::unique_ptr<Effect> effect);
   void add_forces();
@@ -64,6 +69,7 @@ class Simulation {
   void push(double dt);
   void apply(Timed& timed, double dt);
   void kick(double dt);
+  [[nodiscard]] double calls_a_step(const Effect& effect) const;
   [[nodiscard]] Body region(const std::string& name) const;
 
   SceneSettings settings_;
