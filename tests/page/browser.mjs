@@ -4,10 +4,10 @@ import { createHash } from "node:crypto";
 import { copyFileSync, existsSync, mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 
-export const bin = process.env.ELROM_BIN;
-const packages = process.env.ELROM_PAGE_PACKAGES;
+export const bin = resolve(process.env.ELROM_BIN ?? ".");
+const packages = resolve(process.env.ELROM_PAGE_PACKAGES ?? ".");
 export const chromium = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
 
 /// What is missing for a browser to look at the page; nothing: all is there.
