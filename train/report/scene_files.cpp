@@ -13,13 +13,12 @@
 #include "elrom/io/csv.hpp"
 #include "elrom/io/file_kind.hpp"
 #include "elrom/report/scenes.hpp"
+#include "json_number.hpp"
 
 namespace elrom::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
 constexpr const char* again = "simulate again with elrom-simulate, to the end of the scene";
 
 Columns read_columns(const fs::path& path) {

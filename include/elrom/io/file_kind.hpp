@@ -54,7 +54,7 @@ inline constexpr FileKind scene_checkpoint{
     "elrom-scene-checkpoint", {2, 0}, "remove it and simulate again with elrom-simulate"};
 inline constexpr FileKind scene_summary{"elrom-scene", {1, 1}, "simulate again with elrom-simulate"};
 inline constexpr FileKind scene_report{"elrom-scene-report", {1, 0}, "report again with elrom-report scenes"};
-inline constexpr FileKind repository{"elrom-repository", {1, 0}, "restore it from a backup"};
+inline constexpr FileKind repository{"elrom-repository", {1, 1}, "restore it from a backup"};
 
 inline constexpr std::array all{mesh,
                                 snapshots,
