@@ -49,7 +49,7 @@ struct Options {
 /// A server with a folder and a token of its own, on a disk of its own where that may be mounted.
 struct Place {
   test::TemporaryFolder folder;
-  test::TinyDisk disk{folder / "disk", "100m"};
+  test::TinyDisk disk{folder / "disk", "400m"};
   std::string data = (folder / "disk/data").string();
   std::vector<std::string> arguments{"--data", data, "--quiet", "--requests-per-second", "1000000"};
   std::string token;
