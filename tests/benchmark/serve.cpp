@@ -49,13 +49,14 @@ struct Options {
 /// A server with a folder and a token of its own, on a disk of its own where that may be mounted.
 struct Place {
   test::TemporaryFolder folder;
-  test::TinyDisk disk{folder / "disk", "400m"};
+  test::TinyDisk disk;
   std::string data = (folder / "disk/data").string();
   std::vector<std::string> arguments{"--data", data, "--quiet", "--requests-per-second", "1000000"};
   std::string token;
   std::unique_ptr<Serving> serving;
 
-  Place(const std::string& database, const std::string& bundle) {
+  Place(const std::string& database, const std::string& bundle, const std::string& disk_size = "100m")
+      : disk(folder / "disk", disk_size) {
     const auto program = sibling("elrom-serve").string();
     arguments.insert(arguments.end(), {"--database", database, "--model", bundle});
     token = base::trim(test::outcome_of("'" + program + "' --data " + data + " --database '" + database +
@@ -366,7 +367,7 @@ struct FaultedRuns {
 /// Runs that real masters work off while they and the server are killed: each has one result, whose fields
 /// are there.
 FaultedRuns faulted_runs(const std::string& database, const std::string& bundle, const Options& options) {
-  Place place(database, bundle);
+  Place place(database, bundle, "3g");  // nine fields a run
   FaultedRuns result{.of = options.small ? 20 : 200};
   const auto inputs = inputs_of(serve::OpenModel(bundle));
   const auto post = [&](const std::string& target, const Json& body, const std::string& key) {
