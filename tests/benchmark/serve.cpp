@@ -55,7 +55,7 @@ struct Place {
   std::string token;
   std::unique_ptr<Serving> serving;
 
-  Place(const std::string& database, const std::string& bundle, const std::string& disk_size = "100m")
+  Place(const std::string& database, const std::string& bundle, const std::string& disk_size = "3g")
       : disk(folder / "disk", disk_size) {
     const auto program = sibling("elrom-serve").string();
     arguments.insert(arguments.end(), {"--database", database, "--model", bundle});
@@ -251,7 +251,7 @@ int count_sound(const Place& place, int n) {
 
 FaultedCalls faulted_calls(const std::string& database, const Options& options) {
   constexpr int n_clients = 8, calls_each = 4;
-  Place place(database, "none");
+  Place place(database, "none", "100m");  // soon full
   const int n = options.calls() / calls_each;
   FaultedCalls result{.of = n * calls_each};
   std::atomic<int> next = 0;
@@ -367,7 +367,7 @@ struct FaultedRuns {
 /// Runs that real masters work off while they and the server are killed: each has one result, whose fields
 /// are there.
 FaultedRuns faulted_runs(const std::string& database, const std::string& bundle, const Options& options) {
-  Place place(database, bundle, "3g");  // nine fields a run
+  Place place(database, bundle);
   FaultedRuns result{.of = options.small ? 20 : 200};
   const auto inputs = inputs_of(serve::OpenModel(bundle));
   const auto post = [&](const std::string& target, const Json& body, const std::string& key) {
