@@ -1,11 +1,8 @@
 #include <fmt/format.h>
-#include <stdlib.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -16,6 +13,7 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/base/shell.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/ingest/watch.hpp"
 #include "judgement_options.hpp"
@@ -38,30 +36,15 @@ void wait(double seconds, const std::stop_token& stop) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 
-/// Runs the command in a shell and waits for its end, or ends it. @return how it ended, in words; empty: well
+/// Tells the command what was added. @return how it ended, in words; empty: well
 std::string run_command(const std::string& command, const std::filesystem::path& store,
                         const std::vector<std::string>& added, const std::stop_token& stop) {
-  const auto store_text = std::filesystem::absolute(store).string(), names = base::join(added, ",");
   std::fflush(stdout);
-  const pid_t child = ::fork();
-  if (child < 0) return "could not be started";
-  if (child == 0) {
-    ::setenv("ELROM_STORE", store_text.c_str(), 1);
-    ::setenv("ELROM_ADDED", names.c_str(), 1);
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
-    ::execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
-    ::_exit(127);
-  }
-  int status = 0;
-  bool told = false;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (stop.stop_requested() && !told) told = ::kill(child, SIGTERM) == 0;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  if (WIFSIGNALED(status)) return fmt::format("was ended by signal {}", WTERMSIG(status));
-  const int exit_status = WEXITSTATUS(status);
-  return exit_status == 0 ? "" : fmt::format("ended with status {}", exit_status);
+  return base::run_shell(command,
+                         {.environment = {{"ELROM_STORE", std::filesystem::absolute(store).string()},
+                                          {"ELROM_ADDED", base::join(added, ",")}}},
+                         stop)
+      .in_words();
 }
 
 /// Names of the store's cases while a batch and its command are under way: what a killed watch added, and

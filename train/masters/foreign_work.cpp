@@ -3,12 +3,12 @@
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/base/shell.hpp"
 #include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/field/case_json.hpp"
 #include "elrom/ingest/import_checked.hpp"
 #include "elrom/masters/foreign_program.hpp"
-#include "elrom/masters/shell.hpp"
 #include "elrom/repository/rules.hpp"
 #include "simulated_case.hpp"
 
@@ -67,8 +67,8 @@ class ForeignRun {
   void run(const std::stop_token& stop) const {
     const auto said = folder_ / "log.txt";
     const auto end =
-        run_shell(options_.program.command,
-                  {.folder = copy(), .output = said, .seconds = options_.program.time_limit_s}, stop);
+        base::run_shell(options_.program.command,
+                        {.folder = copy(), .output = said, .seconds = options_.program.time_limit_s}, stop);
     if (end.well()) return;
     if (end.stopped) throw Interrupted(options_.program.name + " was stopped");
     const Problem problem{.what = options_.program.name + " " + end.in_words(),

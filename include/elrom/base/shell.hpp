@@ -10,7 +10,7 @@
 #include <stop_token>
 #include <string>
 
-namespace elrom::masters {
+namespace elrom::base {
 
 struct ShellOptions {
   std::filesystem::path folder = {};                    ///< where it runs; empty: here
@@ -34,4 +34,4 @@ struct ShellEnd {
 /// @throws SystemError when it cannot be started
 ShellEnd run_shell(const std::string& command, const ShellOptions& options, const std::stop_token& stop);
 
-}  // namespace elrom::masters
+}  // namespace elrom::base

@@ -1,4 +1,4 @@
-#include "elrom/masters/shell.hpp"
+#include "elrom/base/shell.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -15,7 +15,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 
-namespace elrom::masters {
+namespace elrom::base {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -113,4 +113,4 @@ ShellEnd run_shell(const std::string& command, const ShellOptions& options, cons
   return end;
 }
 
-}  // namespace elrom::masters
+}  // namespace elrom::base

@@ -1,4 +1,4 @@
-#include "elrom/masters/shell.hpp"
+#include "elrom/base/shell.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 
 #include "support/temporary_folder.hpp"
 
-namespace elrom::masters {
+namespace elrom::base {
 namespace {
 
 struct Folder {
@@ -66,4 +66,4 @@ TEST(Shell, EndsWhatNobodyWantsAnyMore) {
 }
 
 }  // namespace
-}  // namespace elrom::masters
+}  // namespace elrom::base
