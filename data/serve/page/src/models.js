@@ -1,25 +1,13 @@
 // Versions of the model: what made each, how accurate it is, which one answers.
 import * as api from "./api.js";
 import { chip, h, notice, table } from "./dom.js";
+import { ListView } from "./list_view.js";
 import { fieldLabel, number, short } from "./words.js";
 
-export class ModelsView {
-  static async open(shared) {
-    const view = new ModelsView(shared);
-    await view.load();
-    return view;
-  }
-
+export class ModelsView extends ListView {
   constructor(shared) {
-    this.shared = shared;
-    this.list = h("div", { class: "list" });
-    this.detail = h("div", { class: "detail" });
-    this.element = h("div", { class: "page" }, h("h1", {}, "Models"),
-      h("p", { class: "lead" }, "Versions of the study's model. A new one answers only when the gate finds no field worse, or an administrator says so."),
-      h("div", { class: "columns" }, this.list, this.detail));
+    super(shared, "Models", "Versions of the study's model. A new one answers only when the gate finds no field worse, or an administrator says so.");
   }
-
-  close() {}
 
   async load() {
     try {

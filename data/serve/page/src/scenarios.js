@@ -1,25 +1,15 @@
 // Scenarios: operating points that were saved, and what the models make of them.
 import * as api from "./api.js";
 import { chip, h, notice, table } from "./dom.js";
+import { ListView } from "./list_view.js";
 import { number, percent, plain, short, time, unitText } from "./words.js";
 
 const models = { elrom: "ELROM", el3d: "EL3D" };
 const period = 2000; // ms between two looks at runs that are not over
 
-export class ScenariosView {
-  static async open(shared) {
-    const view = new ScenariosView(shared);
-    await view.load();
-    return view;
-  }
-
+export class ScenariosView extends ListView {
   constructor(shared) {
-    this.shared = shared;
-    this.list = h("div", { class: "list" });
-    this.detail = h("div", { class: "detail" });
-    this.element = h("div", { class: "page" }, h("h1", {}, "Scenarios"),
-      h("p", { class: "lead" }, "Operating points, each judged by the guard when it came. Models take runs on them and give back results."),
-      h("div", { class: "columns" }, this.list, this.detail));
+    super(shared, "Scenarios", "Operating points, each judged by the guard when it came. Models take runs on them and give back results.");
   }
 
   close() {
