@@ -1,5 +1,6 @@
 #pragma once
-// Spheres of about one size in cells, and who is near whom among them and across to another size. Internal to scene.
+// Spheres of about one size in cells, and who is near whom among them and across to another size. Internal to
+// scene.
 
 #include <algorithm>
 #include <array>
