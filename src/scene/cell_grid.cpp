@@ -13,8 +13,6 @@ namespace {
 constexpr double most_cells = 5e6;
 constexpr int samples = 4;  // a cell's inside is sought at so many points each way
 
-std::array<double, 3> array_of(const Vec& v) { return {v.x, v.y, v.z}; }
-
 // Along one axis: the two nodes around a place and how near the upper one is.
 struct Along {
   std::int64_t below;

@@ -49,7 +49,7 @@ struct Grid {
   [[nodiscard]] std::size_t size() const { return count[0] * count[1] * count[2]; }
   [[nodiscard]] std::size_t at(const Index& i) const { return i[0] + count[0] * (i[1] + count[1] * i[2]); }
   [[nodiscard]] Index nearest(const Vec& place) const {
-    const std::array<double, 3> x{place.x, place.y, place.z};
+    const auto x = array_of(place);
     Index index{};
     for (std::size_t a = 0; a < 3; ++a)
       index[a] = static_cast<std::size_t>(
@@ -132,7 +132,7 @@ class FrozenGas final : public GasField {
   };
 
   [[nodiscard]] Vec at(const Vec& place) const {
-    const std::array<double, 3> x{place.x, place.y, place.z};
+    const auto x = array_of(place);
     Index below{}, above{};
     std::array<double, 3> share{};
     for (std::size_t a = 0; a < 3; ++a) {

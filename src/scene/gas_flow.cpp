@@ -15,8 +15,6 @@ constexpr int most_sweeps = 30;     // of the velocities' equation,
 constexpr double enough = 1e-7;     // or until they change by so little
 constexpr std::int32_t none = CellGrid::none;
 
-std::array<double, 3> array_of(const Vec& v) { return {v.x, v.y, v.z}; }
-
 }  // namespace
 
 // A face through which gas may go, with all that its equation reads.

@@ -156,8 +156,7 @@ class Level {
   }
 
   void place_grid(const Particles& p, const Domain& domain, double size) {
-    const Vec period = domain.images().period;
-    const std::array<double, 3> lengths{period.x, period.y, period.z};
+    const auto lengths = array_of(domain.images().period);
     for (std::size_t a = 0; a < 3; ++a) {
       double low = HUGE_VAL, high = -HUGE_VAL;
       for (const auto i : members) {
@@ -180,7 +179,7 @@ class Level {
 
   // Not clamped to the table: an index beyond it is a cell that holds nothing, or of a period.
   [[nodiscard]] Cell cell_of(const Vec& p) const {
-    const std::array<double, 3> at{p.x, p.y, p.z};
+    const auto at = array_of(p);
     Cell cell;
     for (std::size_t a = 0; a < 3; ++a)
       cell[a] =

@@ -8,7 +8,7 @@
 namespace elrom::ingest {
 namespace {
 
-CfdCase shipped() { return read_el3d(ELROM_SOURCE_DIR "/data/cases/train_000.h5"); }
+CfdCase first_shipped() { return read_el3d(ELROM_SOURCE_DIR "/data/cases/train_000.h5"); }
 
 Coverage coverage_of(const CfdCase& one, const field::Mesh& mesh) {
   OntoMesh onto_mesh(mesh, 2);
@@ -20,7 +20,7 @@ Coverage coverage_of(const CfdCase& one, const field::Mesh& mesh) {
 TEST(OntoMesh, MeshesOfOneFurnaceReachEachOtherHoweverCoarseTheyAre) {
   for (const auto& mesh : {field::make_furnace_mesh({}, 5, 6, 10), field::make_furnace_mesh({}, 10, 21, 33),
                            field::make_furnace_mesh({}, 20, 42, 66)}) {
-    const auto coverage = coverage_of(shipped(), mesh);
+    const auto coverage = coverage_of(first_shipped(), mesh);
 
     EXPECT_EQ(coverage.uncovered, 0) << mesh.n_planes;
     EXPECT_EQ(coverage.beyond, 0) << mesh.n_planes;
@@ -29,7 +29,7 @@ TEST(OntoMesh, MeshesOfOneFurnaceReachEachOtherHoweverCoarseTheyAre) {
 
 TEST(OntoMesh, AScaledMeshLeavesCellsOutOfReach) {
   const auto mesh = field::make_furnace_mesh({}, 10, 21, 33);
-  auto small = shipped(), large = shipped();
+  auto small = first_shipped(), large = first_shipped();
   small.centre *= 0.7;
   large.centre *= 1.4;
 
@@ -39,7 +39,7 @@ TEST(OntoMesh, AScaledMeshLeavesCellsOutOfReach) {
 }
 
 TEST(OntoMesh, AMeshInMillimetresIsRefusedAtOnce) {
-  auto one = shipped();
+  auto one = first_shipped();
   one.centre *= 1000;
 
   EXPECT_ERROR(InputError, "does not lie on the reduced mesh",

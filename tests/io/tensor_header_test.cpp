@@ -30,7 +30,7 @@ TensorHeader small_header() {
   return header;
 }
 
-std::optional<TensorHeader> read(const std::string& json) {
+std::optional<TensorHeader> read_header(const std::string& json) {
   try {
     return parse_header(json, 25, "test");
   } catch (const InputError&) {
@@ -51,7 +51,7 @@ void expect_equal(const TensorHeader& a, const TensorHeader& b) {
 }
 
 TEST(TensorHeader, ReadsWhatItWrote) {
-  const auto header = read(format_header(small_header()));
+  const auto header = read_header(format_header(small_header()));
   ASSERT_TRUE(header);
   expect_equal(*header, small_header());
 }
@@ -75,7 +75,7 @@ TEST(TensorHeader, ReadsTheSameInOtherWords) {
     json += (json.back() == '{' ? "" : ",") + escaped(name) + ":" + escaped(text);
   json += "} } \n";
 
-  const auto found = read(json);
+  const auto found = read_header(json);
   ASSERT_TRUE(found) << json;
   expect_equal(*found, header);
 }
@@ -140,7 +140,7 @@ TEST(TensorHeader, AgreesWithAGeneralParserOnDamagedHeaders) {
           bad.erase(place, 1);
       }
     }
-    const auto found = read(bad);
+    const auto found = read_header(bad);
     const auto document = general(bad);
     ASSERT_TRUE(found || !document || !is_a_header(*document, tensors)) << "refused: " << bad;
     if (!found) continue;

@@ -9,7 +9,7 @@
 namespace elrom::model {
 namespace {
 
-constexpr Eigen::Index n_inputs = 8;
+constexpr Eigen::Index n_plant_inputs = 8;
 
 double normal(base::Random& random) {
   double sum = 0;
@@ -20,19 +20,20 @@ double normal(base::Random& random) {
 /// Inputs 10 (1 + k) load, each with a scatter of 5 % of its value; the last does not follow the load.
 MatrixD plant(std::size_t n_cases, std::uint64_t seed) {
   base::Random random{base::Seed(seed)};
-  MatrixD inputs(static_cast<Eigen::Index>(n_cases), n_inputs);
+  MatrixD inputs(static_cast<Eigen::Index>(n_cases), n_plant_inputs);
   for (Eigen::Index i = 0; i < inputs.rows(); ++i) {
     const double load = random.uniform(0.4, 1.0);
-    for (Eigen::Index j = 0; j + 1 < n_inputs; ++j)
+    for (Eigen::Index j = 0; j + 1 < n_plant_inputs; ++j)
       inputs(i, j) = 10.0 * static_cast<double>(j + 1) * load * (1 + 0.05 * normal(random));
-    inputs(i, n_inputs - 1) = 300 + 20 * normal(random);
+    inputs(i, n_plant_inputs - 1) = 300 + 20 * normal(random);
   }
   return inputs;
 }
 
 std::vector<double> at_load(double load) {
   std::vector<double> inputs;
-  for (Eigen::Index j = 0; j + 1 < n_inputs; ++j) inputs.push_back(10.0 * static_cast<double>(j + 1) * load);
+  for (Eigen::Index j = 0; j + 1 < n_plant_inputs; ++j)
+    inputs.push_back(10.0 * static_cast<double>(j + 1) * load);
   inputs.push_back(300);
   return inputs;
 }
@@ -68,7 +69,7 @@ TEST(OperatingLine, AFewPerCentOfFurtherCasesLieBeyondTheLimit) {
   for (Eigen::Index i = 0; i < further.rows(); ++i) {
     const Eigen::RowVectorXd row = further.row(i);
     const auto usual = line.usual({row.data(), static_cast<std::size_t>(row.size())});
-    for (Eigen::Index j = 0; j < n_inputs; ++j) {
+    for (Eigen::Index j = 0; j < n_plant_inputs; ++j) {
       if (usual[static_cast<std::size_t>(j)].distance(row[j]) <= line.limit()) continue;
       ++beyond;
       break;

@@ -26,7 +26,7 @@ DocumentPart part(double first, double mean = 0, double scale = 1) {
 }
 
 // Along x, sphere 2 at rest in front of sphere 1.
-Pairs head_on(const std::vector<double>& speeds) {
+Pairs head_on_at(const std::vector<double>& speeds) {
   Pairs pairs(speeds.size());
   for (std::size_t i = 0; i < speeds.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -40,7 +40,7 @@ Pairs head_on(const std::vector<double>& speeds) {
 
 TEST(DocumentModel, ImpulsesBringTheVelocitiesThatItsTreesGive) {
   const DocumentModel model(part(10));
-  const auto pairs = head_on({0.5});
+  const auto pairs = head_on_at({0.5});
   Impulses impulses;
 
   model.impulses(pairs, impulses);
@@ -55,7 +55,7 @@ TEST(DocumentModel, ImpulsesBringTheVelocitiesThatItsTreesGive) {
 TEST(DocumentModel, InputsAreScaledAsInTraining) {
   const DocumentModel model(part(0, 3, 2));  // the threshold lies at 3 + 2 * 1 m/s
 
-  const Table after = model.velocities_after(six_velocities(head_on({4.9, 5.1}).before));
+  const Table after = model.velocities_after(six_velocities(head_on_at({4.9, 5.1}).before));
 
   EXPECT_EQ(after(0, 0), 0);
   EXPECT_EQ(after(1, 0), 100);
@@ -78,7 +78,7 @@ TEST(DocumentModel, BothSpheresMustBeSlowForTheLowPart) {
 
 TEST(DocumentModel, PairsThatPartOrAreNotFiniteGetNoImpulse) {
   const DocumentModel model(part(10));
-  auto pairs = head_on({0.5, -0.5, 0, NAN, INFINITY, 0.5, 0.5});
+  auto pairs = head_on_at({0.5, -0.5, 0, NAN, INFINITY, 0.5, 0.5});
   pairs.diameter_2[5] = NAN;
   pairs.before.velocity_2(6, 1) = INFINITY;
   Impulses impulses;
@@ -100,7 +100,7 @@ TEST(DocumentModel, AFileKeepsBothParts) {
     file.write(folder / "c.elrom");
     const auto back = DocumentModel::read(io::TensorFile::open(folder / "c.elrom"));
 
-    const Table velocities = six_velocities(head_on({0.5, 1.5, 3, 5}).before);
+    const Table velocities = six_velocities(head_on_at({0.5, 1.5, 3, 5}).before);
     EXPECT_TRUE((back->velocities_after(velocities) == model.velocities_after(velocities)).all());
     EXPECT_EQ(back->text(), model.text());
   }

@@ -30,6 +30,8 @@ inline Vec cross(const Vec& a, const Vec& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// For loops over the axes.
+inline std::array<double, 3> array_of(const Vec& v) { return {v.x, v.y, v.z}; }
 inline Vec get(const Vectors& v, std::size_t i) { return {v[0][i], v[1][i], v[2][i]}; }
 inline void set(Vectors& v, std::size_t i, const Vec& a) { v[0][i] = a.x, v[1][i] = a.y, v[2][i] = a.z; }
 
