@@ -93,7 +93,7 @@ constexpr bool is_list<std::vector<T>> = true;
 
 template <class T>
 const char* kind_of() {
-  if (std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>) return "FLOAT";
+  if (one_of<T, double, std::optional<double>, std::vector<double>>) return "FLOAT";
   if (std::is_same_v<T, std::optional<std::uint64_t>>) return "UINT";
   if (std::is_integral_v<T>) return std::is_signed_v<T> ? "INT" : "UINT";
   return "TEXT";
@@ -225,6 +225,7 @@ ELROM_OPTION(double);
 ELROM_OPTION(std::optional<double>);
 ELROM_OPTION(std::optional<std::uint64_t>);
 ELROM_OPTION(std::vector<std::string>);
+ELROM_OPTION(std::vector<double>);
 ELROM_OPTION(std::vector<std::filesystem::path>);
 #undef ELROM_OPTION
 

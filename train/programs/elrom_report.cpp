@@ -34,6 +34,8 @@ struct Arguments {
   std::uint64_t seed = 1;
   std::size_t calls = 1'000'000;
   std::optional<double> from;
+  std::vector<double> wanted;
+  double start_up_hours = 0;
   bool small = false, v1_v2 = false, quiet = false, no_peers = false, full = false;
 
   [[nodiscard]] int n_threads() const { return threads > 0 ? threads : base::available_threads(); }
@@ -101,9 +103,14 @@ int run_learning_curve(const Arguments& arguments, Log& log) {
     options.n_points = 3;
     options.n_repeats = 1;
   }
+  if (arguments.start_up_hours > arguments.reference.hours)
+    throw UsageError("--start-up-hours is part of --case-hours, and more than it");
   auto curve = report::learning_curve(options, log, base::interrupt_token());
   curve.small = arguments.small;
-  fmt::print("{}", arguments.v1_v2 ? report::v1_v2_table(curve) : report::terminal_table(curve));
+  curve.price = {arguments.reference.name, arguments.reference.hours, arguments.start_up_hours};
+  fmt::print("{}", arguments.v1_v2
+                       ? report::v1_v2_table(curve)
+                       : report::terminal_table(curve) + report::purchase_table(curve, arguments.wanted));
   const auto usual = arguments.small ? "learning-curve-small.json" : "learning-curve.json";
   write(arguments.json.empty() ? study / usual : fs::path(arguments.json), report::to_json(curve), log);
   return 0;
@@ -155,14 +162,18 @@ void add_common(cli::App& command, Arguments& arguments) {
   command.add_flag("--quiet", arguments.quiet, "no progress, only results and warnings");
 }
 
-void add_reference(cli::App& command, Arguments& arguments) {
+void add_case_hours(cli::App& command, Arguments& arguments) {
   auto& reference = arguments.reference;
   command.add_option("--case-name", reference.name, "what computed the cases")->capture_default_str();
   command
       .add_option("--case-hours", reference.hours,
                   "what it takes for one case, to show beside the models [h]")
       ->check(cli::NonNegativeNumber);
-  command.add_option("--case-cores", reference.cores, "cores that it takes")
+}
+
+void add_reference(cli::App& command, Arguments& arguments) {
+  add_case_hours(command, arguments);
+  command.add_option("--case-cores", arguments.reference.cores, "cores that it takes")
       ->capture_default_str()
       ->check(cli::PositiveNumber);
 }
@@ -214,7 +225,15 @@ void add_learning_curve(cli::App& app, Arguments& arguments) {
   command.add_option("--seed", arguments.seed, "seed of the draws")->capture_default_str();
   command.add_flag("--v1-v2", arguments.v1_v2,
                    "print the source's comparison: a third of the cases against all, by field");
+  base::comma_list(command.add_option(
+      "--wanted", arguments.wanted,
+      "errors to be reached, separated by commas; default: 10, 20, 30 and 50 % below that of all cases"));
   command.add_flag("--small", arguments.small, "three sizes, one draw: ends within a minute");
+  add_case_hours(command, arguments);
+  command
+      .add_option("--start-up-hours", arguments.start_up_hours,
+                  "of these, hours before averaging begins; default: 0")
+      ->check(cli::NonNegativeNumber);
   add_common(command, arguments);
 }
 

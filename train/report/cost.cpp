@@ -194,7 +194,8 @@ void add_sizes(CostReport& report, const CostOptions& options, Log& log, const s
                                        .cases = options.cases,
                                        .method = method,
                                        .n_points = 2,  // and a third of the cases
-                                       .n_threads = options.n_threads},
+                                       .n_threads = options.n_threads,
+                                       .noise = false},
                                       log, stop);
     for (const auto& fitted : curve.points) {
       CostPoint point{.name = fmt::format("{}: {}, {} cases", curve.study, method, fitted.cases),

@@ -21,30 +21,6 @@
 namespace elrom::report {
 namespace {
 
-// The study's held-out cases, and repeated runs that came into the store since it was trained.
-std::vector<std::size_t> judged_rows(const field::SnapshotStore& store, const StudyFiles& study) {
-  auto rows = judging_rows(store, study.held_out);
-  for (std::size_t row = 0; row < store.n_cases() && store.furnace(); ++row) {
-    const auto& name = store.cases()[row].inputs.name;
-    if (store.furnace()->is_repeat(name) && std::ranges::find(study.building, name) == study.building.end() &&
-        std::ranges::find(rows, row) == rows.end())
-      rows.push_back(row);
-  }
-  return rows;
-}
-
-HeldOutCases hold_out_cases(const field::SnapshotStore& store, const StudyFiles& study, Log& log) {
-  const auto judged = study::judged_cases(store, judged_rows(store, study));
-  HeldOutCases cases{.building = {}, .scored = judged.scored, .repeats = judged.repeats, .inputs = {}};
-  if (cases.scored.empty())
-    throw UsageError({.what = "no held-out case to score",
-                      .where = study.directory.string(),
-                      .advice = "name some in study.toml: [split] held_out = [\"load_*\"]"});
-  cases.building = learnt_rows(store, study.building, log);
-  cases.inputs = store.inputs(cases.scored);
-  return cases;
-}
-
 void check_bundle(const model::BundleReader& bundle, const field::SnapshotStore& store) {
   if (bundle.mesh_digest() != store.mesh().digest())
     throw InputError({.what = "bundle and store are of different meshes",

@@ -96,28 +96,10 @@ std::vector<double> noise_of(const FieldTask& task) {
   return noise_at_loads(measured_loads, energies, loads);
 }
 
-/// Mean of all runs of each scored case, and the energy of the noise left in it.
-struct AveragedTruth {
-  MatrixF values;             // (n_cases, n_cells)
-  std::vector<double> noise;  // (n_cases)
-};
-
-AveragedTruth averaged_truth(const FieldTask& task) {
-  AveragedTruth truth;
-  for (std::size_t i = 0; i < task.cases.scored.size(); ++i) {
-    const MatrixF runs = task.store.read(task.info.name, task.cases.runs_of(i));
-    const auto n = static_cast<double>(runs.rows());
-    truth.values.conservativeResize(static_cast<Eigen::Index>(i) + 1, runs.cols());
-    truth.values.row(static_cast<Eigen::Index>(i)) = (runs.cast<double>().colwise().mean()).cast<float>();
-    truth.noise.push_back(noise_energy(runs) / n);
-  }
-  return truth;
-}
-
 void score_against_averages(const FieldTask& task, const std::vector<MatrixF>& predictions,
                             const TrainingStatistics& statistics, FieldAccuracy& result) {
   if (!task.cases.all_repeated()) return;
-  auto truth = averaged_truth(task);
+  auto truth = averaged_truth(task.store, task.info.name, task.cases);
   for (std::size_t m = 0; m < predictions.size(); ++m)
     if (predictions[m].size() > 0)
       result.methods[m].averaged = score_method(task, truth.values, predictions[m], statistics).cases;

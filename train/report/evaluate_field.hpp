@@ -8,32 +8,9 @@
 #include "elrom/field/snapshot_store.hpp"
 #include "elrom/model/predictor.hpp"
 #include "elrom/report/accuracy.hpp"
+#include "held_out_cases.hpp"
 
 namespace elrom::report {
-
-/// Rows of the store by what they are used for.
-struct HeldOutCases {
-  std::vector<std::size_t> building, scored;
-  std::vector<std::vector<std::size_t>> repeats;  ///< runs of the same boundary conditions
-  MatrixD inputs;                                 //!< of the scored cases, SI, (n_cases, n_inputs)
-
-  /// Rows of all runs of a scored case, itself among them; empty: it has no repeated run.
-  [[nodiscard]] std::span<const std::size_t> runs_of(std::size_t i_case) const {
-    for (const auto& set : repeats)
-      if (std::ranges::find(set, scored[i_case]) != set.end()) return set;
-    return {};
-  }
-  [[nodiscard]] bool all_repeated() const {
-    for (std::size_t i = 0; i < scored.size(); ++i)
-      if (runs_of(i).empty()) return false;
-    return true;
-  }
-};
-
-inline std::span<const double> case_inputs(const HeldOutCases& cases, std::size_t i_case) {
-  return {cases.inputs.row(static_cast<Eigen::Index>(i_case)).data(),
-          static_cast<std::size_t>(cases.inputs.cols())};
-}
 
 struct FieldTask {
   const field::SnapshotStore& store;

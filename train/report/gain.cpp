@@ -60,7 +60,7 @@ double FieldAccuracy::averaged_nrmse(std::size_t method, std::span<const std::si
     error += methods[method].averaged[i].error - averaged_noise[i];
     departure += methods[method].averaged[i].departure - averaged_noise[i];
   }
-  return departure > 0 ? std::copysign(std::sqrt(std::abs(error) / departure), error) : undefined;
+  return signed_nrmse(error, departure);
 }
 
 MeanError AccuracyReport::averaged_error(std::size_t method) const {

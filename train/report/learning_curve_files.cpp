@@ -9,43 +9,73 @@
 #include "elrom/base/error.hpp"
 #include "elrom/io/file_kind.hpp"
 #include "elrom/report/learning_curve.hpp"
+#include "json_number.hpp"
 #include "names.hpp"
 
 namespace elrom::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
+double number_of(const Json& node, const char* key) {
+  return node.contains(key) && node[key].is_number() ? node[key].get<double>() : undefined;
+}
 
 Json to_node(const LearningPoint& point) {
   return {{"cases", point.cases},
           {"error_mean", point.error_mean},
           {"error_std", point.error_std},
-          {"field_error", point.field_error}};
+          {"field_error", point.field_error},
+          {"averaged_mean", number(point.averaged_mean)},
+          {"averaged_std", number(point.averaged_std)}};
 }
 
 LearningPoint to_point(const Json& node) {
   return {.cases = node.at("cases"),
           .error_mean = node.at("error_mean"),
           .error_std = node.at("error_std"),
-          .field_error = node.at("field_error").get<std::map<std::string, double>>()};
+          .field_error = node.at("field_error").get<std::map<std::string, double>>(),
+          .averaged_mean = number_of(node, "averaged_mean"),
+          .averaged_std = number_of(node, "averaged_std")};
+}
+
+Json to_node(const PowerLaw& fit) {
+  return {{"floor", fit.floor}, {"scale", fit.scale}, {"rate", fit.rate}, {"at_bound", fit.at_bound()}};
+}
+PowerLaw to_law(const Json& node) { return {node.at("floor"), node.at("scale"), node.at("rate")}; }
+
+Json to_node(const AveragingCurve& curve) {
+  Json node{{"levels", Json::array()}, {"fields", Json::object()}};
+  for (const auto& level : curve.levels)
+    node["levels"].push_back({{"noise", level.noise}, {"error_mean", level.error_mean}});
+  for (const auto& [name, field] : curve.fields)
+    node["fields"][name] = {{"clean", field.clean}, {"noise", field.noise}};
+  return node;
+}
+AveragingCurve to_averaging(const Json& node) {
+  AveragingCurve curve;
+  for (const auto& level : node.at("levels"))
+    curve.levels.push_back({level.at("noise"), level.at("error_mean")});
+  for (const auto& [name, field] : node.at("fields").items())
+    curve.fields[name] = {field.at("clean"), field.at("noise")};
+  return curve;
 }
 
 }  // namespace
 
 std::string to_json(const LearningCurve& curve) {
   auto root = io::json_head<Json>(io::kinds::learning_curve);
-  root.update({{"study", curve.study},
-               {"method", curve.method},
-               {"points", Json::array()},
-               {"fit",
-                {{"floor", curve.fit.floor},
-                 {"scale", curve.fit.scale},
-                 {"rate", curve.fit.rate},
-                 {"at_bound", curve.fit.at_bound()}}},
-               {"gain_next_20", std::isfinite(curve.gain_next_20) ? Json(curve.gain_next_20) : Json()},
-               {"small", curve.small},
-               {"v1", to_node(curve.v1)},
-               {"v2", to_node(curve.v2)}});
+  root.update(
+      {{"study", curve.study},
+       {"method", curve.method},
+       {"points", Json::array()},
+       {"fit", to_node(curve.fit)},
+       {"gain_next_20", number(curve.gain_next_20)},
+       {"small", curve.small},
+       {"v1", to_node(curve.v1)},
+       {"v2", to_node(curve.v2)},
+       {"averaged_fit", to_node(curve.averaged_fit)},
+       {"averaging", to_node(curve.averaging)},
+       {"price",
+        {{"name", curve.price.name}, {"hours", curve.price.hours}, {"start_up", curve.price.start_up}}}});
   for (const auto& point : curve.points) root["points"].push_back(to_node(point));
   return root.dump(1) + '\n';
 }
@@ -56,11 +86,16 @@ LearningCurve read_learning_curve(const std::filesystem::path& path) {
   try {
     LearningCurve curve{.study = root.at("study"), .method = root.at("method")};
     for (const auto& node : root.at("points")) curve.points.push_back(to_point(node));
-    const auto& fit = root.at("fit");
-    curve.fit = {fit.at("floor"), fit.at("scale"), fit.at("rate")};
+    curve.fit = to_law(root.at("fit"));
     curve.small = root.value("small", false);
     curve.v1 = to_point(root.at("v1"));
     curve.v2 = to_point(root.at("v2"));
+    if (root.contains("averaging")) {  // since 1.2
+      curve.averaged_fit = to_law(root.at("averaged_fit"));
+      curve.averaging = to_averaging(root.at("averaging"));
+      const auto& price = root.at("price");
+      curve.price = {price.at("name"), price.at("hours"), price.at("start_up")};
+    }
     const auto& gain = root.at("gain_next_20");  // files before 1.1 have one from fits at their bound too
     curve.gain_next_20 = curve.fit.at_bound() || gain.is_null() ? std::nan("") : gain.get<double>();
     if (curve.points.empty())
@@ -72,21 +107,39 @@ LearningCurve read_learning_curve(const std::filesystem::path& path) {
 }
 
 std::string terminal_table(const LearningCurve& curve) {
-  auto text =
-      fmt::format("\n  Learning curve of {} ({})\n\n  {:>8}  {:>10}  {:>8}  {:>8}\n  {}\n", curve.study,
-                  method_label(curve.method), "cases", "mean NRMSE", "+-", "fitted", std::string(40, '-'));
-  for (const auto& point : curve.points)
-    text += fmt::format("  {:>8}  {:>10}  {:>8}  {:>8}\n", point.cases, score_text(point.error_mean, 4),
-                        score_text(point.error_std, 4),
-                        score_text(curve.fit.at(static_cast<double>(point.cases)), 4));
+  const bool averaged = curve.has_averaged_truth();
+  auto text = fmt::format("\n  Learning curve of {} ({})\n\n  {:>8}  {:>10}  {:>8}  {:>8}{}\n  {}\n",
+                          curve.study, method_label(curve.method), "cases", "mean NRMSE", "+-", "fitted",
+                          averaged ? "   averaged truths      +-    fitted" : "",
+                          std::string(averaged ? 75 : 40, '-'));
+  for (const auto& point : curve.points) {
+    const auto n = static_cast<double>(point.cases);
+    text += fmt::format("  {:>8}  {:>10}  {:>8}  {:>8}", point.cases, score_text(point.error_mean, 4),
+                        score_text(point.error_std, 4), score_text(curve.fit.at(n), 4));
+    if (averaged)
+      text += fmt::format("  {:>16}  {:>6}  {:>8}", score_text(point.averaged_mean, 4),
+                          score_text(point.averaged_std, 4), score_text(curve.averaged_fit.at(n), 4));
+    text += '\n';
+  }
   return text + "\n  " + outlook(curve) + "\n";
 }
+
+namespace {
+
+std::string averaged_outlook(const LearningCurve& curve) {
+  if (!curve.has_averaged_truth() || curve.averaged_fit.at_bound()) return "";
+  const auto n = static_cast<double>(curve.v2.cases);
+  return fmt::format(", against averaged truths by {}",
+                     percent_text(1 - curve.averaged_fit.at(n + 20) / curve.averaged_fit.at(n)));
+}
+
+}  // namespace
 
 std::string outlook(const LearningCurve& curve) {
   const std::string quick = curve.small ? " A quick look: few sizes, one draw." : "";
   if (!curve.fit.at_bound())
-    return fmt::format("20 more cases are expected to lower the error by {}.",
-                       percent_text(curve.gain_next_20)) +
+    return fmt::format("20 more cases are expected to lower the error by {}{}.",
+                       percent_text(curve.gain_next_20), averaged_outlook(curve)) +
            quick;
   std::string why = "The points fall as no power law with an error above zero does";
   if (curve.fit.scale == 0) why = "The error does not fall with the number of cases here";

@@ -38,6 +38,10 @@ double nrmse_without_noise(const ErrorSums& sums, double noise) {
   return sums.error > noise ? math::nrmse(sums.error - noise, sums.departure - noise) : undefined;
 }
 
+double signed_nrmse(double error, double departure) {
+  return departure > 0 ? std::copysign(std::sqrt(std::abs(error) / departure), error) : undefined;
+}
+
 CaseSpan::CaseSpan(const MatrixF& values) {
   const Eigen::Index n_cases = values.rows();
   MatrixD centred = values.cast<double>();

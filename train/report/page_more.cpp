@@ -180,6 +180,33 @@ std::string slice_chart(const Dimension& dimension,
   return figure(dimension.name, chart.text());
 }
 
+// Both ways to a lower error over what they cost, in hours or in cases' worth of computing.
+std::string purchase_figures(const LearningCurve& curve) {
+  if (!curve.has_averaged_truth() || curve.averaging.fields.empty())
+    return "<p>What longer averaging would buy is not known: it is told by repeated runs of every held-out case, "
+           "and by elrom-report learning-curve.</p>";
+  const auto n = static_cast<double>(curve.v2.cases);
+  const double unit = curve.price.hours > 0 ? curve.price.hours : 1;
+  std::vector<double> spent, more, longer;
+  for (double factor = 1; factor <= 4; factor += 0.05) {
+    spent.push_back((factor - 1) * n * unit);
+    more.push_back(curve.averaged_fit.at(factor * n));
+    const double averaging = unit - curve.price.start_up;
+    longer.push_back(curve.averaging.at(1 + (factor - 1) * unit / averaging));
+  }
+  auto reach = more;
+  reach.insert(reach.end(), longer.begin(), longer.end());
+  svg::Chart chart({.width = 640, .height = 340},
+                   svg::fit_axis(curve.price.hours > 0 ? "further hours of " + curve.price.name
+                                                       : std::string("further computing, in cases"),
+                                 spent),
+                   svg::fit_axis("mean NRMSE, averaged truths", reach), "More cases or longer averaging");
+  if (!curve.averaged_fit.at_bound()) chart.line(spent, more, "s0", "more cases");
+  chart.line(spent, longer, "s1", "each case averaged longer");
+  return figure("More cases (blue), or each averaged longer (grey)", chart.text()) + "<pre>" +
+         escape(purchase_table(curve)) + "</pre>";
+}
+
 }  // namespace
 
 std::string learning_section(const LearningCurve& curve) {
@@ -221,11 +248,12 @@ std::string learning_section(const LearningCurve& curve) {
       "class=\"scroll\"><table><thead><tr><th>field</th><th>v1, {} cases</th><th>v2, {} "
       "cases</th><th>change</th></tr></thead><tbody>{}</tbody></table></div></figure>",
       curve.v1.cases, curve.v2.cases, body);
-  return section("learning", "What more cases buy",
+  return section("learning", "What more cases and longer averaging buy",
                  fmt::format("{} fitted anew on nested subsets, scored on the same held-out cases. {}",
                              escape(method_label(curve.method)), outlook(curve)),
                  "<div class=\"grid2\">" +
-                     figure("Error against the number of training cases", chart.text()) + table + "</div>");
+                     figure("Error against the number of training cases", chart.text()) + table + "</div>" +
+                     purchase_figures(curve));
 }
 
 std::string cost_section(const CostReport& cost) {

@@ -40,6 +40,11 @@ bool PowerLaw::at_bound() const {
   return rate < least_rate + rounding || rate > most_rate - rounding || scale == 0 || floor == 0;
 }
 
+std::optional<double> PowerLaw::cases_for(double error) const {
+  if (at_bound() || error <= floor) return {};
+  return std::pow(scale / (error - floor), 1 / rate);
+}
+
 PowerLaw fit_power_law(const std::vector<double>& cases, const std::vector<double>& errors) {
   check(cases.size() == errors.size() && !cases.empty(), "fit_power_law: as many errors as numbers of cases");
   PowerLaw best;

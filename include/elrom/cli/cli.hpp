@@ -65,7 +65,7 @@ concept one_of = (std::same_as<T, Types> || ...);
 template <class T>
 concept Value = one_of<T, std::string, std::filesystem::path, int, unsigned, std::int64_t, std::uint64_t,
                        double, std::optional<double>, std::optional<std::uint64_t>, std::vector<std::string>,
-                       std::vector<std::filesystem::path>>;
+                       std::vector<std::filesystem::path>, std::vector<double>>;
 
 /// A program, or one of its subcommands.
 class App {

@@ -39,7 +39,7 @@ inline constexpr FileKind retrain{"elrom-retrain", {1, 1}, "retrain again with e
 inline constexpr FileKind accuracy{"elrom-accuracy", {1, 2}, "report again with elrom-report accuracy"};
 inline constexpr FileKind comparison{"elrom-comparison", {1, 0}, "compare again with elrom-report compare"};
 inline constexpr FileKind learning_curve{
-    "elrom-learning-curve", {1, 1}, "draw it again with elrom-report learning-curve"};
+    "elrom-learning-curve", {1, 2}, "draw it again with elrom-report learning-curve"};
 inline constexpr FileKind cost{"elrom-cost", {1, 1}, "report again with elrom-report cost"};
 inline constexpr FileKind collisions{
     "elrom-collisions", {1, 0}, "make them again with elrom-data collisions"};
