@@ -5,9 +5,9 @@
 // same held-out cases; and the source's comparison of v1 (a third of the cases) with v2 (all of them).
 //
 // Longer averaging: the noise of a time average falls as 1 / time. It cannot be taken out of the training
-// cases, but more can be put in: the method is fitted to cases with added noise of the kind that repeated runs
-// show, and its error drawn back to less noise than they have (simulation extrapolation, Cook and Stefanski
-// 1994).
+// cases, but more can be put in: the method is fitted to cases with added noise of the kind that repeated
+// runs show, and its error drawn back to less noise than they have (simulation extrapolation, Cook and
+// Stefanski 1994).
 //
 // Error: mean over fields of the pooled NRMSE, whose training mean is that of *all* training cases at every
 // point, so that points differ by the model alone. Where every held-out case has repeated runs, errors stand
@@ -59,17 +59,17 @@ struct PowerLaw {
   /// The points asked for more than the law can give: a rate beyond its range, an error that rises, or one
   /// that would fall below nothing. It then draws a line through them, but says nothing of more cases.
   [[nodiscard]] bool at_bound() const;
-  /// How many cases bring the error down to `error`; none for an error that the floor does not let be reached,
-  /// and at_bound().
+  /// How many cases bring the error down to `error`; none for an error that the floor does not let be
+  /// reached, and at_bound().
   [[nodiscard]] std::optional<double> cases_for(double error) const;
 };
 /// @param cases, errors the points, at least three of different size; fewer give a constant
 [[nodiscard]] PowerLaw fit_power_law(const std::vector<double>& cases, const std::vector<double>& errors);
 
 /// Error against the noise of the training cases. Of each field, against averaged truths:
-/// NRMSE^2 = clean + noise * s, with s the variance of the noise (1: as the cases are; 1 / f: averaged f times
-/// as long). A method that smooths more where there is more noise bends below that line, so less noise is
-/// worth at least what it says.
+/// NRMSE^2 = clean + noise * s, with s the variance of the noise (1: as the cases are; 1 / f: averaged f
+/// times as long). A method that smooths more where there is more noise bends below that line, so less
+/// noise is worth at least what it says.
 struct AveragingCurve {
   struct Field {
     double clean = 0, noise = 0;
@@ -118,7 +118,8 @@ struct Purchase {
   std::optional<double> averaging;  ///< times as long; none: not within `farthest`
   static constexpr double farthest = 10;
 };
-/// @param wanted errors; empty: 10, 20, 30 and 50 % below the error of all cases. None without averaged truths.
+/// @param wanted errors; empty: 10, 20, 30 and 50 % below the error of all cases. None without averaged
+/// truths.
 [[nodiscard]] std::vector<Purchase> purchases(const LearningCurve& curve, std::vector<double> wanted = {});
 /// Further hours of the solver, where its runs can go on from where they ended. NaN: not known.
 [[nodiscard]] double hours_of_cases(const LearningCurve& curve, double cases);

@@ -42,8 +42,9 @@ struct WorstCell {
 /// @param noise energy in all cases summed in `sums`
 [[nodiscard]] double nrmse_without_noise(const ErrorSums& sums, double noise);
 
-/// The root of error / departure with the sign of the error: an estimate from which noise was taken off may lie
-/// below nothing, and to call it 0 would promise a perfect model. NaN for a departure that is not above 0.
+/// The root of error / departure with the sign of the error: an estimate from which noise was taken off may
+/// lie below nothing, and to call it 0 would promise a perfect model. NaN for a departure that is not above
+/// 0.
 [[nodiscard]] double signed_nrmse(double error, double departure);
 
 /// The training cases' span: how well any combination of them could represent a field.
