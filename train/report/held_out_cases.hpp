@@ -1,5 +1,5 @@
 #pragma once
-// The cases that a report judges on, and their truths: single runs, or the mean of all runs of the same boundary
+// The cases that a report judges on, and their truths: single runs, or the mean of all runs of one boundary
 // conditions. Internal to the report.
 
 #include <algorithm>
