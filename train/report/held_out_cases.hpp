@@ -1,6 +1,6 @@
 #pragma once
-// The cases that a report judges on, and their truths: single runs, or the mean of all runs of one boundary
-// conditions. Internal to the report.
+// The cases that a report judges on, and their truths: single runs, or the mean of all repeated runs.
+// Internal to the report.
 
 #include <algorithm>
 #include <span>
