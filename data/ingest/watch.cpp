@@ -167,14 +167,16 @@ Look Watcher::look(Log& log, const std::stop_token& stop) {
   auto import = options_.import;
   import.files = files;
   std::vector<Refusal> refused;
-  import.refused = [&](const fs::path& file, const std::string& reason) { refused.push_back({file, reason});
-};
-const auto summary = import_checked(import, {Policy::drop, options_.accepted}, log, stop);
-result.added = summary.added;
-result.n_cases = summary.n_cases;
-for (const auto& path : files) settled_[path] = now.at(path);
-for (const auto& refusal : refused) result.refused.push_back(put_aside(refusal, log));
-return result;
-}  // namespace elrom::ingest
+  const auto keep = [&](const fs::path& file, const std::string& reason) {
+    refused.push_back({file, reason});
+  };
+  import.refused = keep;
+  const auto summary = import_checked(import, {Policy::drop, options_.accepted}, log, stop);
+  result.added = summary.added;
+  result.n_cases = summary.n_cases;
+  for (const auto& path : files) settled_[path] = now.at(path);
+  for (const auto& refusal : refused) result.refused.push_back(put_aside(refusal, log));
+  return result;
+}
 
 }  // namespace elrom::ingest

@@ -20,7 +20,7 @@ class House:
                 section = "libraries"
             if not line.strip() or line.startswith("#"):
                 continue
-            name, *rest = line.split()
+            name, *rest = line.split("#")[0].split()
             if section == "libraries":
                 self.libraries.append((name, rest[0], set(rest[1:])))
                 continue

@@ -149,6 +149,17 @@ TEST(FileKind, NamesAreUniqueAndDocumented) {
   }
 }
 
+// What is not in `all` is checked by no test here.
+TEST(FileKind, TheTableHoldsEachOfThem) {
+  std::ifstream file(std::filesystem::path(ELROM_SOURCE_DIR) / "include/elrom/io/file_kind.hpp");
+  const std::string header((std::istreambuf_iterator<char>(file)), {}),
+      declared = "inline constexpr FileKind ";
+  std::size_t n_declared = 0;
+  for (auto at = header.find(declared); at != std::string::npos; at = header.find(declared, at + 1))
+    ++n_declared;
+  EXPECT_EQ(n_declared, kinds::all.size());
+}
+
 // A kind that is spelled out is one that was written or read past the table and its check.
 TEST(FileKind, KindsAreSpelledOutInTheTableAlone) {
   const std::filesystem::path root(ELROM_SOURCE_DIR);

@@ -49,7 +49,8 @@ struct AutoFit {
                                const FitContext& context);
 
 /// Weights with sum 1, none negative, that minimise the squared error of sum_i weight_i * prediction_i,
-/// from the candidates' Gram matrix of errors, G_ij = sum of error_i * error_j (n, n).
+/// from the candidates' Gram matrix of errors, G_ij = sum of error_i * error_j (n, n), of nine at most:
+/// each set of them is tried.
 [[nodiscard]] std::vector<double> blend_weights(const Eigen::MatrixXd& error_gram);
 
 /// Square root of the sum of squared errors over that of the rows' deviations from their mean.
