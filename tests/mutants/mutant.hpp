@@ -1,9 +1,9 @@
 #pragma once
-// Switches of tests/mutants/run: all faults of a room are compiled at once, and ELROM_MUTANT=number of one turns it on, in a
-// program and in those that it starts.
+// Switches of tests/mutants/run: all faults of a room are compiled at once, and ELROM_MUTANT=number of one
+// turns it on, in a program and in those that it starts.
 //
-// An operator becomes two with a switch between them: a < b is a < Either<12, std::less_equal<>>{} < b. The same
-// operator keeps precedence and grouping; what stands left of it waits for what stands right.
+// An operator becomes two with a switch between them: a < b is a < Either<12, std::less_equal<>>{} < b. The
+// same operator keeps precedence and grouping; what stands left of it waits for what stands right.
 
 #include <cstdlib>
 #include <functional>
