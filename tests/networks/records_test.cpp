@@ -54,6 +54,44 @@ TEST(Records, TargetsOfTheTrainingRecordsAreStandardisedColumnByColumn) {
   }
 }
 
+TEST(Records, EachRecordKnowsItsPlane) {
+  const auto cases = test::toy_cases(n_cases);
+  const auto data = test::toy_field(cases);
+  const auto set = make_records({data, all_cases()}, whole_case_parts(14), {});
+
+  std::vector<float> encoding(static_cast<std::size_t>(set.planes.size()));
+  const auto n = static_cast<Eigen::Index>(encoding.size());
+  for (std::size_t i = 0; i < set.records.plane.size(); ++i) {
+    set.planes.encode(static_cast<std::size_t>(set.records.plane[i]), encoding);
+    const auto own = set.records.inputs.row(static_cast<Eigen::Index>(i)).tail(n);
+    EXPECT_TRUE(std::equal(encoding.begin(), encoding.end(), own.begin())) << "record " << i;
+  }
+}
+
+TEST(Records, TargetsAreTransformedBeforeTheyAreScaled) {
+  const auto cases = test::toy_cases(n_cases);
+  const auto data = test::toy_field(cases);
+  const auto set =
+      make_records({data, all_cases()}, whole_case_parts(14), {.transform = model::TransformKind::asinh});
+
+  ASSERT_EQ(set.transform.kind, model::TransformKind::asinh);
+  const Eigen::Index plane = set.records.plane[5], case_of = set.records.case_of[5];
+  const float value = data.values(case_of, plane * set.records.targets.cols() + 2);
+  EXPECT_NEAR(unscaled_target(set, 5, 2), set.transform.apply(value), 1e-4F * (1 + std::abs(value)));
+  EXPECT_NE(set.transform.apply(value), value);
+}
+
+TEST(RecordSource, DealsAllCasesOutByTheRule) {
+  const auto cases = test::toy_cases(n_cases);
+  const auto data = test::toy_field(cases);
+  const RecordRecipe recipe{.options = {}, .parts = {}, .seed = base::Seed(3)};
+
+  const RecordSource source(data, all_cases(), recipe);
+
+  EXPECT_EQ(source.get().records.part, split_records(cases.loads, n_planes, recipe.parts, recipe.seed));
+  EXPECT_FALSE(source.get().records.rows(Part::validation).empty());
+}
+
 TEST(RecordSource, KnownCasesKeepTheRecordsThatTheyHadWithoutTheOthers) {
   const auto cases = test::toy_cases(n_cases);
   const auto data = test::toy_field(cases);

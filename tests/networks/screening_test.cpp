@@ -59,6 +59,8 @@ TEST(Screening, ErrorRisesWithTheNoiseOfAColumn) {
   EXPECT_GT(error[19], 0.6) << "a column of 90 % noise variance is not";
   EXPECT_EQ(result.error.rows(), 5);
   EXPECT_EQ(result.build_error.rows(), 2);
+  EXPECT_GT(result.mean_epochs, 1);
+  EXPECT_LE(result.mean_epochs, small_settings().max_epochs);
 }
 
 TEST(Screening, MeanOverPlanesOfEqualCountIsTheColumnError) {

@@ -246,15 +246,6 @@ TEST(SearchSpace, NotANumberDecodesToTheMiddle) {
             space.decode(std::vector<double>{0.5, 0.5, 0.5, 0.5}));
 }
 
-TEST(Sobol, FirstPointsFillEveryDyadicIntervalOnce) {
-  const std::vector<double> shift(6, 0.0);
-  for (std::size_t d = 0; d < 6; ++d) {
-    std::set<int> sixteenths;
-    for (std::size_t i = 0; i < 16; ++i) sixteenths.insert(static_cast<int>(sobol_point(i, shift)[d] * 16));
-    EXPECT_EQ(sixteenths.size(), 16u) << "dimension " << d;
-  }
-}
-
 TEST(TrialStore, RefusesAFileOfAnotherKind) {
   const auto path =
       std::filesystem::temp_directory_path() / ("store_" + std::to_string(::getpid()) + ".sqlite");
@@ -276,6 +267,7 @@ TEST(TrialStore, TrialsReadBackExactly) {
               .value = 0.1 + 0.2,
               .epochs = 7,
               .pruned = true,
+              .diverged = true,
               .rungs = {0.3, 1.0 / 7}};
   {
     TrialStore store(path);
@@ -289,7 +281,9 @@ TEST(TrialStore, TrialsReadBackExactly) {
   EXPECT_EQ(found->hyperparameters, trial.hyperparameters);
   EXPECT_EQ(found->value, trial.value);
   EXPECT_EQ(found->rungs, trial.rungs);
+  EXPECT_EQ(found->epochs, 7);
   EXPECT_TRUE(found->pruned);
+  EXPECT_TRUE(found->diverged);
   EXPECT_FALSE(store.find("s", "k", 1));
   ASSERT_EQ(store.searches().size(), 1u);
   EXPECT_EQ(store.searches()[0].name, "pressure");
