@@ -113,13 +113,11 @@ http::Response get(Desk& desk, const Ask& ask) {
   bool there = false;
   desk.repository.read([&](Transaction& transaction) { there = transaction.fields(digest).has_value(); });
   if (!there) throw repository::NotFoundError(Problem{.what = "no such fields", .found = "'" + digest + "'"});
-  const http::Headers tag{{"ETag", tag_of(digest)}};
-  const auto* has = ask.request.header("If-None-Match");
-  if (has != nullptr && *has == tag_of(digest)) return {.status = 304, .headers = tag};
-  http::Response response{.headers = tag, .body = desk.repository.fields().read(digest)};
-  response.headers.emplace_back("Content-Type", "application/x-hdf5");
-  response.headers.emplace_back("Cache-Control", "private, max-age=31536000, immutable");
-  return response;
+  if (auto known = known_already(ask.request, tag_of(digest))) return std::move(*known);
+  return {.headers = {{"ETag", tag_of(digest)},
+                      {"Content-Type", "application/x-hdf5"},
+                      {"Cache-Control", "private, max-age=31536000, immutable"}},
+          .body = desk.repository.fields().read(digest)};
 }
 
 }  // namespace

@@ -120,8 +120,7 @@ http::Response cut(Desk& desk, const Ask& ask) {
         Problem{.what = "wrong at", .where = "query", .found = "'" + text + "'", .expected = "a place [m]"});
   const auto wanted = cut_of<UsageError>(model->cuts(), ask.target.value("axis").value_or(""), at, "query");
   const auto tag = "\"" + model->bundle().mesh_digest() + "\"";
-  const auto* has = ask.request.header("If-None-Match");
-  if (has != nullptr && *has == tag) return {.status = 304, .headers = {{"ETag", tag}}};
+  if (auto known = known_already(ask.request, tag)) return std::move(*known);
   return {.headers = {{"Content-Type", "application/octet-stream"}, {"ETag", tag}},
           .body = polygons_answer(wanted, model->cuts().polygons(wanted))};
 }
@@ -129,8 +128,7 @@ http::Response cut(Desk& desk, const Ask& ask) {
 http::Response mesh(Desk& desk, const Ask& ask) {
   const auto model = open_model(desk);
   const auto tag = "\"" + model->bundle().mesh_digest() + "\"";
-  const auto* has = ask.request.header("If-None-Match");
-  if (has != nullptr && *has == tag) return {.status = 304, .headers = {{"ETag", tag}}};
+  if (auto known = known_already(ask.request, tag)) return std::move(*known);
   const auto mesh = model->bundle().mesh({.with_corners = false});
   http::Response response{.headers = {{"Content-Type", "application/octet-stream"}, {"ETag", tag}}};
   response.body.resize(static_cast<std::size_t>(mesh.centre.size()) * sizeof(float));

@@ -1,5 +1,7 @@
 // Scenarios, runs, versions and quarantine, as people see them.
 import assert from "node:assert/strict";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { drawn, look, serve, sha256, text } from "./browser.mjs";
 
@@ -83,6 +85,29 @@ test("a reader sees versions and may not promote", async () => {
   await page.evaluate(() => [...document.querySelectorAll(".list button")].find((one) => one.innerText === "Version 2").click());
   await has(page, ".detail", "needs a token with the role admin");
   assert.match(await text(page, ".detail"), /What the gate said[\s\S]*worse/);
+  assert.deepEqual(faults, []);
+});
+
+test("a report opens with its own scripts, which reach nothing", async () => {
+  const digest = (await server.call("GET", "/model")).body.digest;
+  mkdirSync(join(server.folder, "data/reports"), { recursive: true });
+  writeFileSync(join(server.folder, `data/reports/${digest}.html`), `<!doctype html><title>quiet</title><p>no script ran</p>
+    <button onclick="document.title = 'a handler ran'">-</button><script>document.querySelector("p").textContent = "its script ran";</script>`);
+  const { page, browser, faults } = await see("#models", "reader");
+  await has(page, ".detail", "Version 1");
+  await page.locator("#report").click();
+  const report = await (await browser.waitForTarget((one) => one.url().includes("/reports/"), { timeout: 15000 })).page();
+
+  await has(report, "p", "its script ran");
+  await report.click("button");
+  assert.equal(await report.title(), "quiet");
+  assert.equal(await report.evaluate(() => self.origin), "null");
+  assert.deepEqual(await report.evaluate(async () => {
+    const tries = [() => sessionStorage.length, () => fetch("/healthz"), () => new Worker("/page.js"), () => opener.document];
+    const told = [];
+    for (const one of tries) told.push(await Promise.resolve().then(one).then(() => "reached", () => "kept out"));
+    return told;
+  }), ["kept out", "kept out", "kept out", "kept out"]);
   assert.deepEqual(faults, []);
 });
 
