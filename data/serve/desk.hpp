@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 
+#include "cuts.hpp"
 #include "elrom/repository/rules.hpp"
 #include "elrom/serve/service.hpp"
 #include "json_body.hpp"
@@ -52,6 +53,8 @@ struct Desk {
 
 /// The model that answers now. @throws NotFoundError
 [[nodiscard]] std::shared_ptr<const OpenModel> open_model(Desk& desk);
+/// ?axis=&at=. @throws UsageError
+[[nodiscard]] Cut cut_in_query(const Ask& ask, const Cuts& cuts);
 /// A body's "case", "load" and "inputs". @throws InputError
 [[nodiscard]] repository::JudgedInputs judge_case(const JsonBody& body, const OpenModel& model);
 /// What elrom-predict can write here: "hdf", "csv" ...; openfoam only onto a case.

@@ -46,8 +46,16 @@ test("an operating point is saved, run, and opened again", async () => {
 
   const claim = (await server.call("POST", "/claims", { model: "elrom", worker: "w1", lease_s: 60 })).body;
   await has(page, ".detail", "worked on by w1");
-  await server.call("POST", `/runs/${claim.id}/outcome`, { lease: claim.lease, state: "done", result: { version: "abc", verdict: "inside", reason: "", document: { distance: 0.4 } } });
+  const file = (await server.call("POST", "/predictions", { inputs, fields: ["gas_velocity_x"] }, { Accept: "application/x-hdf5" })).body;
+  assert.equal((await server.call("PUT", `/fields/${sha256(file)}`, file, { "Content-Type": "application/x-hdf5" })).status, 201);
+  await server.call("POST", `/runs/${claim.id}/outcome`, { lease: claim.lease, state: "done", ask: ["el3d"],
+    result: { version: "abc", verdict: "outside", reason: "too much air", document: { distance: 0.4 }, fields: sha256(file) } });
   await has(page, ".detail", "distance");
+  assert.match(await text(page, ".chain"), /ELROM\s+done\s+outside[\s\S]*distance 0.400[\s\S]*too much air/);
+  assert.match(await text(page, ".chain li li"), /EL3D\s+waiting/); // asked by the other, so to its right
+  await page.waitForSelector(".chain figure:not([hidden]) canvas");
+  assert.ok(await page.$eval(".chain canvas", (one) => one.getContext("2d").getImageData(0, 0, one.width, one.height).data.some((byte) => byte > 0)));
+  assert.match(await text(page, ".models"), /ELROM\s+1 done[\s\S]*EL3D\s+1 waiting/);
   await page.locator(".detail .primary").click();
   await drawn(page);
   assert.deepEqual(faults, []);

@@ -122,6 +122,7 @@ class Operation {
       test::write_bytes(report_file(), "<p>");
     if (path_.starts_with("/reports")) fill("/reports/{place}", made_report());
     if (path_ == "/mesh/cut") path_now_ += "?axis=x&at=5.3";
+    if (path_.ends_with("}/cut")) path_now_ += "?axis=x&at=5.3";
     if (path_.starts_with("/tokens"))
       fill("{name}", method_ == "DELETE" ? made_token() : "new" + std::to_string(n_));
     if (path_.starts_with("/fields"))
