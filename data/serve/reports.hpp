@@ -1,7 +1,7 @@
 #pragma once
-// Reports of a model's versions: elrom-report's pages, made when somebody first asks for one, and places where
-// a browser may open them. Who follows a link sends no token, so that each opening has a place of its own,
-// which nobody guesses and which is soon gone.
+// Reports of a model's versions: elrom-report's pages, made when somebody first asks for one, and places
+// where a browser may open them. Who follows a link sends no token, so that each opening has a place of its
+// own, which nobody guesses and which is soon gone.
 //
 // Thread rule: any thread.
 
