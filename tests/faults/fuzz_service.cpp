@@ -103,7 +103,7 @@ void fuzz_service_request(Bytes input) {
   expect(answer.status != 500, "the server made a mistake: " + answer.body);
   expect(answer.status < 503, "the server is in trouble: " + answer.body);
   expect(answer.body.find("secret") == std::string::npos ||
-             request.target.find("secret") != std::string::npos ||
+             (request.method + request.target).find("secret") != std::string::npos ||
              request.body.find("secret") != std::string::npos,
          "a file outside of the page's folder");
   (void)served.service->body_limit(request);
