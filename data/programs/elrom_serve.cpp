@@ -76,12 +76,16 @@ std::filesystem::path found_page(const std::filesystem::path& prefix) {
 
 serve::ServiceOptions service_options(const ServeOptions& options) {
   const auto program = std::filesystem::read_symlink("/proc/self/exe");
-  const auto predict = program.parent_path() / "elrom-predict";
+  const auto beside = [&](const char* name) {
+    const auto file = program.parent_path() / name;
+    return std::filesystem::exists(file) ? file : std::filesystem::path();
+  };
   serve::ServiceOptions service{
       .repository = repository_options(options),
       .model = options.model.empty() ? options.data / "study" : options.model,
       .page = options.page.empty() ? found_page(program.parent_path().parent_path()) : options.page,
-      .predict_program = std::filesystem::exists(predict) ? predict : "",
+      .predict_program = beside("elrom-predict"),
+      .report_program = beside("elrom-report"),
       .openfoam_case = options.openfoam_case,
       .judge_upload = [program](const std::filesystem::path& file, const std::filesystem::path& bundle) {
         serve::judge_in_process(program, file, bundle);

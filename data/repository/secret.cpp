@@ -1,4 +1,4 @@
-#include "secret.hpp"
+#include "elrom/repository/secret.hpp"
 
 #include <unistd.h>
 

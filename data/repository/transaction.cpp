@@ -6,7 +6,7 @@
 #include "database.hpp"
 #include "elrom/base/digest.hpp"
 #include "elrom/base/text.hpp"
-#include "secret.hpp"
+#include "elrom/repository/secret.hpp"
 
 namespace elrom::repository {
 namespace {

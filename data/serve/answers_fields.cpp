@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <atomic>
 #include <span>
 
 #include "desk.hpp"
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/digest.hpp"
+#include "elrom/model/prediction_file.hpp"
+#include "prediction_answer.hpp"
 #include "problem.hpp"
 
 namespace elrom::serve {
@@ -108,18 +111,43 @@ http::Response put(Desk& desk, const Ask& ask) {
   return known(digest, 201);
 }
 
-http::Response get(Desk& desk, const Ask& ask) {
+/// A request's digest. @throws NotFoundError
+const std::string& kept_digest(Desk& desk, const Ask& ask) {
   const auto& digest = ask.parameters[0];
   bool there = false;
   desk.repository.read([&](Transaction& transaction) { there = transaction.fields(digest).has_value(); });
-  if (!there) throw repository::NotFoundError(Problem{.what = "no such fields", .found = "'" + digest + "'"});
-  const http::Headers tag{{"ETag", tag_of(digest)}};
-  const auto* has = ask.request.header("If-None-Match");
-  if (has != nullptr && *has == tag_of(digest)) return {.status = 304, .headers = tag};
-  http::Response response{.headers = tag, .body = desk.repository.fields().read(digest)};
-  response.headers.emplace_back("Content-Type", "application/x-hdf5");
-  response.headers.emplace_back("Cache-Control", "private, max-age=31536000, immutable");
-  return response;
+  if (there) return digest;
+  throw repository::NotFoundError(Problem{.what = "no such fields", .found = "'" + digest + "'"});
+}
+
+http::Response get(Desk& desk, const Ask& ask) {
+  const auto& digest = kept_digest(desk, ask);
+  if (auto known = known_already(ask.request, tag_of(digest))) return std::move(*known);
+  return {.headers = {{"ETag", tag_of(digest)},
+                      {"Content-Type", "application/x-hdf5"},
+                      {"Cache-Control", "private, max-age=31536000, immutable"}},
+          .body = desk.repository.fields().read(digest)};
+}
+
+/// The file is read here only after a process of its own has read it, when it came.
+http::Response cut(Desk& desk, const Ask& ask) {
+  const auto& digest = kept_digest(desk, ask);
+  const auto model = open_model(desk);
+  const auto wanted = cut_in_query(ask, model->cuts());
+  model::StoredPrediction stored;
+  {
+    const std::scoped_lock lock(desk.hdf5);
+    stored = model::read_prediction(desk.repository.fields().path(digest));
+  }
+  // A part of the furnace, and a digest that only says so, have other numbers of values.
+  const bool same = stored.mesh_digest == model->bundle().mesh_digest() &&
+                    std::ranges::all_of(stored.fields, [&](const auto& field) {
+                      return field.values.size() == model->n_cells();
+                    });
+  std::optional<std::vector<std::int32_t>> cells;
+  if (same) cells = model->cuts().cells(wanted);
+  return {.headers = {{"Content-Type", "application/octet-stream"}},
+          .body = cut_answer(wanted, stored, cells)};
 }
 
 }  // namespace
@@ -133,6 +161,16 @@ std::vector<Route> field_routes() {
            .answer = get,
            .media = {"application/x-hdf5"},
            .tagged = true},
+          {.method = "GET",
+           .path = "/fields/{digest}/cut",
+           .role = Role::reader,
+           .summary = "Fields of the file where a plane cut goes through the model's mesh, in the order of "
+                      "GET /mesh/cut; `fields` is null when it is on another mesh",
+           .answers = {{200, "a JSON header and the numbers, framed as POST /predictions does"},
+                       {400, "no such cut"}},
+           .answer = cut,
+           .query = {{"axis", "x, y or z"}, {"at", "where on it [m]"}},
+           .media = {"application/octet-stream"}},
           {.method = "PUT",
            .path = "/fields/{digest}",
            .role = Role::model,

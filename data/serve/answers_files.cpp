@@ -2,8 +2,8 @@
 
 #include "desk.hpp"
 #include "elrom/base/atomic_file.hpp"
+#include "elrom/base/shell.hpp"
 #include "elrom/base/text.hpp"
-#include "process.hpp"
 #include "tar.hpp"
 
 namespace elrom::serve {
@@ -80,7 +80,7 @@ std::string written(const fs::path& out) {
 }
 
 http::Response file(Desk& desk, const Ask& ask) {
-  constexpr int patience_s = 120;
+  constexpr double patience_s = 120;
   const auto model = open_model(desk);
   const JsonBody body(ask.request.body, {"case", "load", "inputs", "format", "intervals"});
   const auto& kind = kind_in(body, desk);
@@ -90,9 +90,10 @@ http::Response file(Desk& desk, const Ask& ask) {
   Json one{{"case", "prediction"}, {"inputs", Json::parse(judged.document)}};
   if (body.has("load")) one["load"] = body.number("load");
   base::write_text(folder.path() / "case.json", one.dump());
-  const auto ended = run_process(
-      command_of(desk, *model, folder.path(), kind.name, body.flag_or("intervals", true)), patience_s);
-  if (ended.status != 0)
+  const auto ended =
+      base::run_program(command_of(desk, *model, folder.path(), kind.name, body.flag_or("intervals", true)),
+                        {.listen = true, .seconds = patience_s});
+  if (!ended.well())
     throw InputError(Problem{.what = "elrom-predict did not write the file", .found = ended.reason()});
   const std::string ending = kind.name == std::string("openfoam") ? "tar" : kind.name;
   return {.headers = {{"Content-Type", kind.media},

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -112,16 +111,9 @@ Cut cut_of(const Cuts& cuts, const std::string& axis, double at, const std::stri
 
 http::Response cut(Desk& desk, const Ask& ask) {
   const auto model = open_model(desk);
-  const auto text = ask.target.value("at").value_or("");
-  double at = std::nan("");
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), at);
-  if (fault != std::errc{} || end != text.data() + text.size() || !std::isfinite(at))
-    throw UsageError(
-        Problem{.what = "wrong at", .where = "query", .found = "'" + text + "'", .expected = "a place [m]"});
-  const auto wanted = cut_of<UsageError>(model->cuts(), ask.target.value("axis").value_or(""), at, "query");
+  const auto wanted = cut_in_query(ask, model->cuts());
   const auto tag = "\"" + model->bundle().mesh_digest() + "\"";
-  const auto* has = ask.request.header("If-None-Match");
-  if (has != nullptr && *has == tag) return {.status = 304, .headers = {{"ETag", tag}}};
+  if (auto known = known_already(ask.request, tag)) return std::move(*known);
   return {.headers = {{"Content-Type", "application/octet-stream"}, {"ETag", tag}},
           .body = polygons_answer(wanted, model->cuts().polygons(wanted))};
 }
@@ -129,8 +121,7 @@ http::Response cut(Desk& desk, const Ask& ask) {
 http::Response mesh(Desk& desk, const Ask& ask) {
   const auto model = open_model(desk);
   const auto tag = "\"" + model->bundle().mesh_digest() + "\"";
-  const auto* has = ask.request.header("If-None-Match");
-  if (has != nullptr && *has == tag) return {.status = 304, .headers = {{"ETag", tag}}};
+  if (auto known = known_already(ask.request, tag)) return std::move(*known);
   const auto mesh = model->bundle().mesh({.with_corners = false});
   http::Response response{.headers = {{"Content-Type", "application/octet-stream"}, {"ETag", tag}}};
   response.body.resize(static_cast<std::size_t>(mesh.centre.size()) * sizeof(float));
@@ -231,6 +222,15 @@ http::Response predict(Desk& desk, const Ask& ask) {
 }
 
 }  // namespace
+
+Cut cut_in_query(const Ask& ask, const Cuts& cuts) {
+  const auto text = ask.target.value("at").value_or("");
+  const auto at = base::to_double(text);
+  if (!at || !std::isfinite(*at))
+    throw UsageError(
+        Problem{.what = "wrong at", .where = "query", .found = "'" + text + "'", .expected = "a place [m]"});
+  return cut_of<UsageError>(cuts, ask.target.value("axis").value_or(""), *at, "query");
+}
 
 std::vector<Route> model_routes() {
   return {

@@ -1,5 +1,7 @@
 #include "desk.hpp"
+#include "elrom/base/atomic_file.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/repository/secret.hpp"
 #include "elrom/study/versions.hpp"
 
 namespace elrom::serve {
@@ -86,6 +88,37 @@ http::Response promote(Desk& desk, const Ask& ask) {
   return json_response(document_of(versions_of(desk), static_cast<int>(number)));
 }
 
+http::Response make_report(Desk& desk, const Ask& ask) {
+  const auto versions = versions_of(desk);
+  const auto number = id_of(ask);
+  (void)file_of(versions, number);
+  const auto file = desk.reports.of(desk.options.model, versions, static_cast<int>(number));
+  const auto place = "/reports/" + desk.reports.places.open(file);
+  auto response = json_response({{"place", place}}, 201);
+  response.headers.emplace_back("Location", place);
+  return response;
+}
+
+/// A document with scripts of its own, in a policy of its own: it has no origin (so it sees neither our page
+/// nor its token), reaches no server, and runs what stands in it as a script and nothing else.
+http::Response report(Desk& desk, const Ask& ask) {
+  const auto file = desk.reports.places.file(ask.parameters[0]);
+  if (!file) throw NotFoundError(Problem{.what = "no report here", .advice = "open it again from the page"});
+  const auto nonce = repository::random_secret();
+  const std::string script = "<script>";
+  auto text = base::read_text(*file);
+  for (auto at = text.find(script); at != std::string::npos; at = text.find(script, at + 1))
+    text.insert(at + script.size() - 1, " nonce=\"" + nonce + "\"");
+  return {.headers = {{"Content-Type", "text/html; charset=utf-8"},
+                      {"Content-Security-Policy",
+                       "sandbox allow-scripts; default-src 'none'; script-src 'nonce-" + nonce +
+                           "'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
+                           "'none'; frame-ancestors 'none'"},
+                      {"Referrer-Policy", "no-referrer"},
+                      {"Cache-Control", "no-store"}},
+          .body = std::move(text)};
+}
+
 }  // namespace
 
 std::vector<Route> version_routes() {
@@ -101,6 +134,22 @@ std::vector<Route> version_routes() {
            .summary = "One version: its errors, settings and origin",
            .answers = {{200, "it"}},
            .answer = one},
+          {.method = "POST",
+           .path = "/models/{id}/report",
+           .role = Role::reader,
+           .summary =
+               "A place where a browser may open the version's report for ten minutes: its accuracy or, of "
+               "one that does not answer, how it compares with the one that does. Made when it is first "
+               "asked for",
+           .answers = {{201, "it is at `place`"}, {409, "a report is being made"}},
+           .answer = make_report},
+          {.method = "GET",
+           .path = "/reports/{place}",
+           .role = {},
+           .summary = "A report: one HTML document with its own scripts, in a sandbox",
+           .answers = {{200, "it"}, {404, "there is no such place, or no longer"}},
+           .answer = report,
+           .media = {"text/html"}},
           {.method = "PUT",
            .path = "/models/current",
            .role = Role::admin,

@@ -63,14 +63,15 @@ http::Response json_response(const Json& document, int status) {
 }
 
 http::Response tagged_response(const Ask& ask, const Json& document, const std::string& tag) {
-  const auto* has = ask.request.header("If-None-Match");
-  http::Response response;
-  if (has != nullptr && (*has == tag || *has == "*"))
-    response.status = 304;
-  else
-    response = json_response(document);
+  if (auto known = known_already(ask.request, tag)) return std::move(*known);
+  auto response = json_response(document);
   response.headers.emplace_back("ETag", tag);
   return response;
+}
+
+std::optional<http::Response> known_already(const http::Request& request, const std::string& tag) {
+  if (!http::has_tag(request, tag)) return std::nullopt;
+  return http::Response{.status = 304, .headers = {{"ETag", tag}}};
 }
 
 http::Response once(Desk& desk, const Ask& ask, const std::function<Answer(repository::Transaction&)>& work) {

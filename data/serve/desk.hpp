@@ -4,10 +4,12 @@
 #include <memory>
 #include <mutex>
 
+#include "cuts.hpp"
 #include "elrom/repository/rules.hpp"
 #include "elrom/serve/service.hpp"
 #include "json_body.hpp"
 #include "metrics.hpp"
+#include "reports.hpp"
 #include "route.hpp"
 
 namespace elrom::serve {
@@ -17,16 +19,23 @@ struct Desk {
   repository::Repository repository;
   ResidentModel model;
   Metrics metrics;
+  Reports reports;
   std::mutex hdf5;  ///< the library is not thread-safe
 
   explicit Desk(ServiceOptions wanted)
-      : options(std::move(wanted)), repository(options.repository), model(options.model) {}
+      : options(std::move(wanted)),
+        repository(options.repository),
+        model(options.model),
+        reports(options.repository.folder / "reports", options.report_program) {}
 };
 
 /// A JSON document as an answer.
 [[nodiscard]] http::Response json_response(const Json& document, int status = 200);
 /// The same with an ETag; 304 where the caller has it already.
 [[nodiscard]] http::Response tagged_response(const Ask& ask, const Json& document, const std::string& tag);
+/// 304 where the caller has it already; nothing: it is to be sent, with the tag.
+[[nodiscard]] std::optional<http::Response> known_already(const http::Request& request,
+                                                          const std::string& tag);
 
 /// A write by its Idempotency-Key: done once, answered again. Kept answers are JSON.
 [[nodiscard]] http::Response once(Desk& desk, const Ask& ask,
@@ -44,6 +53,8 @@ struct Desk {
 
 /// The model that answers now. @throws NotFoundError
 [[nodiscard]] std::shared_ptr<const OpenModel> open_model(Desk& desk);
+/// ?axis=&at=. @throws UsageError
+[[nodiscard]] Cut cut_in_query(const Ask& ask, const Cuts& cuts);
 /// A body's "case", "load" and "inputs". @throws InputError
 [[nodiscard]] repository::JudgedInputs judge_case(const JsonBody& body, const OpenModel& model);
 /// What elrom-predict can write here: "hdf", "csv" ...; openfoam only onto a case.

@@ -7,7 +7,6 @@
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/version.hpp"
-#include "elrom/model/prediction_file.hpp"
 
 namespace elrom::serve {
 namespace {
@@ -136,6 +135,19 @@ std::string polygons_answer(const Cut& cut, const CutPolygons& polygons) {
                  {"points", {offsets, points}}},
                 {std::as_bytes(std::span(polygons.cells)), std::as_bytes(std::span(polygons.offsets)),
                  std::as_bytes(std::span(polygons.points))});
+}
+
+std::string cut_answer(const Cut& cut, const model::StoredPrediction& stored,
+                       const std::optional<std::vector<std::int32_t>>& cells) {
+  Json head{{"axis", axes[cut.axis]}, {"at", cut.at}, {"fields", cells ? Json::object() : Json()}};
+  std::vector<float> values;
+  for (const auto& field : stored.fields) {
+    if (!cells) break;
+    head["fields"][field.name] = {{"unit", field.unit},
+                                  {"values", {values.size(), values.size() + cells->size()}}};
+    for (const auto cell : *cells) values.push_back(field.values[static_cast<std::size_t>(cell)]);
+  }
+  return framed(head, {std::as_bytes(std::span(values))});
 }
 
 std::string hdf_answer(const Predicted& predicted, std::mutex& hdf5, const std::filesystem::path& folder) {

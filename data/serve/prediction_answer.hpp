@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cuts.hpp"
+#include "elrom/model/prediction_file.hpp"
 #include "elrom/serve/resident_model.hpp"
 #include "json_body.hpp"
 
@@ -43,5 +44,10 @@ struct Predicted {
 /// As binary_answer(), with "cells" (int32: numbers in the mesh), "offsets" (int32: of each cell's points,
 /// and the end) and "points" (float32: x, y, z [m]) as places of four bytes.
 [[nodiscard]] std::string polygons_answer(const Cut& cut, const CutPolygons& polygons);
+/// Kept fields where a cut meets the cells, in the order of its polygons: "axis", "at" and
+/// "fields": {name: {"unit", "values": places of float32}}.
+/// @param cells of the cut, where the file has values of all of them; nothing: "fields" is null
+[[nodiscard]] std::string cut_answer(const Cut& cut, const model::StoredPrediction& stored,
+                                     const std::optional<std::vector<std::int32_t>>& cells);
 
 }  // namespace elrom::serve

@@ -152,7 +152,7 @@ struct Service::Impl {
       return response;
     }
     if (request.method == "GET")
-      if (auto file = static_file(desk.options.page, target)) return std::move(*file);
+      if (auto file = static_file(desk.options.page, target, request)) return std::move(*file);
     return problem_response(404, {.what = "there is no such place", .found = request.target});
   }
 };

@@ -39,9 +39,16 @@ bool lies_in(const std::filesystem::path& file, const std::filesystem::path& fol
   return !inside.empty() && *inside.begin() != "..";
 }
 
+/// A file that was replaced has another time: nobody has to read it to know.
+std::string tag_of(const std::filesystem::path& file) {
+  const auto changed = std::filesystem::last_write_time(file).time_since_epoch().count();
+  return "\"" + std::to_string(changed) + "-" + std::to_string(std::filesystem::file_size(file)) + "\"";
+}
+
 }  // namespace
 
-std::optional<http::Response> static_file(const std::filesystem::path& folder, const http::Target& target) {
+std::optional<http::Response> static_file(const std::filesystem::path& folder, const http::Target& target,
+                                          const http::Request& request) {
   if (folder.empty()) return std::nullopt;
   auto named = folder;
   for (const auto& segment : target.segments) {
@@ -53,12 +60,17 @@ std::optional<http::Response> static_file(const std::filesystem::path& folder, c
   const auto root = std::filesystem::canonical(folder, fault),
              file = std::filesystem::canonical(named, fault);
   if (fault || !std::filesystem::is_regular_file(file) || !lies_in(file, root)) return std::nullopt;
-  return http::Response{.headers = {{"Content-Type", media_of(file)},
-                                    {"Content-Security-Policy", policy},
-                                    {"Referrer-Policy", "no-referrer"},
-                                    {"Cross-Origin-Opener-Policy", "same-origin"},
-                                    {"Cache-Control", "no-cache"}},
-                        .body = base::read_text(file)};
+  http::Response response{.headers = {{"Content-Type", media_of(file)},
+                                      {"Content-Security-Policy", policy},
+                                      {"Referrer-Policy", "no-referrer"},
+                                      {"Cross-Origin-Opener-Policy", "same-origin"},
+                                      {"Cache-Control", "no-cache"},  // looked for anew each time
+                                      {"ETag", tag_of(file)}}};
+  if (http::has_tag(request, *response.header("ETag")))
+    response.status = 304;
+  else
+    response.body = base::read_text(file);
+  return response;
 }
 
 }  // namespace elrom::serve

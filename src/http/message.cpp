@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "elrom/base/text.hpp"
+
 namespace elrom::http {
 namespace {
 
@@ -110,6 +112,15 @@ std::optional<Target> parse_target(std::string_view target) {
   if (!parse_path(target.substr(0, mark), parsed.segments) || !parse_query(query, parsed.query))
     return std::nullopt;
   return parsed;
+}
+
+bool has_tag(const Request& request, std::string_view tag) {
+  const auto* header = request.header("If-None-Match");
+  if (header == nullptr) return false;
+  return std::ranges::any_of(base::split(*header, ','), [&](const std::string& one) {
+    const auto named = base::trim(one);
+    return named == "*" || named == tag || (named.starts_with("W/") && named.substr(2) == tag);
+  });
 }
 
 std::string_view reason_of(int status) {

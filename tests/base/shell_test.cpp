@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <fstream>
 #include <thread>
 
+#include "elrom/base/error.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace elrom::base {
@@ -64,6 +66,40 @@ TEST(Shell, EndsWhatNobodyWantsAnyMore) {
   EXPECT_TRUE(end.stopped);
   EXPECT_FALSE(end.well());
 }
+
+TEST(Shell, ListensToAProgramWhoseWordsItDoesNotRead) {
+  const auto end = run_program({"/bin/echo", "$HOME; *", "a  b"}, {.listen = true});
+
+  EXPECT_TRUE(end.well());
+  EXPECT_EQ(end.said, "$HOME; * a  b\n");
+  EXPECT_EQ(run_shell("echo 'elrom-x: error: no fields' >&2; exit 3", {.listen = true}).reason(),
+            "no fields");
+  EXPECT_EQ(run_shell("yes | head -c 100000; echo end", {.listen = true}).said.size(), 65536U);
+  EXPECT_EQ(run_shell("true", {.listen = true}).reason(), "");
+}
+
+TEST(Shell, TheChildHasNoneOfOurFiles) {
+  const test::TemporaryFolder folder;
+  folder.write("ours", "x");
+  const std::ifstream ours(folder / "ours");
+
+  EXPECT_THAT(run_shell("ls -l /proc/self/fd", {.listen = true}).said,
+              ::testing::Not(::testing::HasSubstr("ours")));
+}
+
+TEST(Shell, AnEndIsSeenAtOnce) {
+  constexpr int n = 20;
+  double shortest_s = 1;
+  for (int i = 0; i < n; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    (void)run_shell("true", {});
+    shortest_s =
+        std::min(shortest_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  EXPECT_LT(shortest_s, 0.015);  // an upload waits for it
+}
+
+TEST(Shell, WhatCannotBeginSaysSo) { EXPECT_THROW((void)run_program({"/nothing/there"}, {}), SystemError); }
 
 }  // namespace
 }  // namespace elrom::base

@@ -408,6 +408,52 @@ FaultedRuns faulted_runs(const std::string& database, const std::string& bundle,
   return result;
 }
 
+/// Boundary conditions with one mistake each: of every input, every kind that the schema and physics know.
+std::vector<Json> mistaken(const Json& inputs) {
+  std::vector<Json> all;
+  for (const auto& [name, value] : inputs.items()) {
+    const auto add = [&, &key = name](const std::string& other, const Json& wrong) {
+      auto one = inputs;
+      one.erase(key);
+      if (!other.empty()) one[other] = wrong;
+      all.push_back(std::move(one));
+    };
+    // Of a number without a unit physics knows nothing, unless it is a fraction: the guard marks it.
+    const bool bounded = !name.ends_with("[1]") || name.ends_with("fraction [1]");
+    if (bounded) add(name, -1e3);
+    for (const Json& wrong : {Json(1e30), Json("much"), Json(nullptr), Json::array({value}), Json(true)})
+      add(name, wrong);
+    const auto bare = name.substr(0, name.find(" ["));
+    add("", {});
+    for (const char* unit : {" [furlong]", " [A]", " ["}) add(bare + unit, value);
+    add("no_" + name, value);
+  }
+  return all;
+}
+
+struct WrongData {
+  std::size_t stopped = 0, of = 0;
+};
+
+/// Refused, in quarantine with the reason, and no scenario that a model could be asked about.
+WrongData wrong_data(const Place& place, const Json& inputs) {
+  http::Client client(place.serving->url());
+  WrongData result;
+  const auto n_before = place.all("/scenarios").size();
+  for (const auto& wrong : mistaken(inputs)) {
+    const auto name = "wrong-" + std::to_string(result.of++);
+    const auto answer = client.send({.method = "POST",
+                                     .target = "/scenarios",
+                                     .headers = place.headers(name),
+                                     .body = Json{{"name", name}, {"inputs", wrong}}.dump()});
+    const bool stopped = answer.status == 422 && Json::parse(answer.body).contains("quarantine");
+    if (!stopped) fmt::print("not stopped: {}\n{}", wrong.dump(), answer.body);
+    result.stopped += stopped;
+  }
+  if (place.all("/scenarios").size() != n_before) throw SystemError("a wrong scenario was kept");
+  return result;
+}
+
 /// Nine fields up, as a file of their own each time, and down again.
 double fields_ms(const Place& place, const Json& inputs, int n) {
   http::Client client(place.serving->url());
@@ -576,8 +622,11 @@ Json measure(const Options& options) {
   }
   const serve::OpenModel model(bundle);
   const auto inputs = inputs_of(model);
-  const Place place("sqlite", bundle);
+  Place place("sqlite", bundle);
   const int n = options.small ? 5 : 40;
+  const auto wrong = wrong_data(place, inputs);
+  figures["wrong_data"] = {{"stopped", wrong.stopped}, {"of", wrong.of}};
+  fmt::print("{} of {} operating points with a mistake stopped\n", wrong.stopped, wrong.of);
   figures["fields_ms"] = fields_ms(place, inputs, n);
   figures["prediction_ms"] = resident_ms(model, n);
   figures["prediction_wire_ms"] = prediction_ms(place, inputs, n);
@@ -593,6 +642,8 @@ Json measure(const Options& options) {
                         {"median_ms", busy.median_ms}, {"p99_ms", busy.p99_ms}};
   fmt::print("{} clients for {} s: {} requests, {} errors, median {:.1f} ms, 99 % {:.0f} ms\n", busy.clients,
              options.load_seconds(), busy.requests, busy.errors, busy.median_ms, busy.p99_ms);
+  const int status = place.serving->end(SIGTERM);
+  if (status != 0) throw SystemError("the server stopped with status " + std::to_string(status));
   return figures;
 }
 

@@ -85,6 +85,7 @@ const std::vector<Share>& shares() {
     {"json_body", 20, 2000},
     {"service_request", 10, 1000},
     {"http_wire", 5, 1000},
+    {"scenario", 20, 2000},
     {"fields_upload", 1, 40000}
 #endif
   };

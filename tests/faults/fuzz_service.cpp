@@ -6,11 +6,13 @@
 #include <stdexcept>
 
 #include "../../data/serve/json_body.hpp"
+#include "../../data/serve/problem.hpp"
 #include "elrom/base/digest.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/http/client.hpp"
 #include "elrom/http/server.hpp"
+#include "elrom/ingest/judge_fields.hpp"
 #include "elrom/repository/rules.hpp"
 #include "elrom/serve/service.hpp"
 #include "memory_file.hpp"
@@ -101,7 +103,7 @@ void fuzz_service_request(Bytes input) {
   expect(answer.status != 500, "the server made a mistake: " + answer.body);
   expect(answer.status < 503, "the server is in trouble: " + answer.body);
   expect(answer.body.find("secret") == std::string::npos ||
-             request.target.find("secret") != std::string::npos ||
+             (request.method + request.target).find("secret") != std::string::npos ||
              request.body.find("secret") != std::string::npos,
          "a file outside of the page's folder");
   (void)served.service->body_limit(request);
@@ -125,9 +127,27 @@ void fuzz_wire(Bytes input) {
   expect(client.send({.method = "GET", .target = "/healthz"}).status == 200, "nobody is answered any more");
 }
 
-void fuzz_upload(Bytes input) {
+/// What keeps a scenario out is told as a document that a caller can read.
+void fuzz_scenario(Bytes input) {
+  static const auto model = target().service->model().now();
   try {
-    repository::judge_fields(memory_file("upload.hdf", input), "");
+    const auto judged =
+        repository::judge_inputs(text_of(input), "request", &model->schema(), &model->guard());
+    expect(serve::Json::parse(judged.document).size() == model->schema().size(), "an input that is missing");
+  } catch (const Error& error) {
+    const auto problem = serve::problem_response(error);
+    expect(problem.status == 400 || problem.status == 422, "not the caller's mistake: " + problem.body);
+    expect(serve::Json::parse(problem.body)["detail"].is_string(), "no problem document: " + problem.body);
+  }
+}
+
+/// As `elrom-serve --judge-fields` does.
+void fuzz_upload(Bytes input) {
+  static const test::SampleRun sample;
+  try {
+    const auto file = memory_file("upload.hdf", input);
+    repository::judge_fields(file, sample.frame.mesh_digest);
+    ingest::judge_physics_of(file, sample.mesh, {});
   } catch (const Error&) {
   }
 }
@@ -171,11 +191,9 @@ std::vector<std::string> wire_seeds() {
 }  // namespace
 
 std::vector<FuzzTarget> service_targets() {
-  return {{"http_target", fuzz_target},
-          {"json_body", fuzz_json_body},
-          {"service_request", fuzz_service_request},
-          {"http_wire", fuzz_wire},
-          {"fields_upload", fuzz_upload}};
+  return {
+      {"http_target", fuzz_target}, {"json_body", fuzz_json_body}, {"service_request", fuzz_service_request},
+      {"http_wire", fuzz_wire},     {"scenario", fuzz_scenario},   {"fields_upload", fuzz_upload}};
 }
 
 std::vector<std::string> service_seeds(const std::string& target) {
@@ -185,6 +203,10 @@ std::vector<std::string> service_seeds(const std::string& target) {
     return {
         R"({"name": "a", "inputs": {"a": 1}, "load": 1e3, "sources": [1, 2], "fields": ["x"], "flag": true})",
         std::string(40, '[') + std::string(40, ']'), R"({"name": "\u0000", "name": "twice"})"};
+  if (target == "scenario")
+    return {
+        R"({"case": "a", "load": 0.6, "inputs": {"flow_0 [kg/s]": 7, "flow_1 [kg/s]": 14, "flow_2 [kg/s]": 21, "flow_3 [t/h]": 100}})",
+        R"({"inputs": {"flow_0 [K]": "\ud800", "flow_0": -1e999, "flow_1 [nothing]": [[]], "\u0000": null}})"};
   if (target == "service_request") return request_seeds();
   if (target == "http_wire") return wire_seeds();
   if (target == "fields_upload") return {sample_upload()};

@@ -31,6 +31,17 @@ TEST(Target, WhatLeavesAFolderOrIsBrokenIsRefused) {
     EXPECT_FALSE(parse_target(target)) << target;
 }
 
+TEST(Tags, AreFoundAmongThoseThatTheCallerHas) {
+  const auto has = [](const char* header) {
+    return has_tag({.method = "GET", .target = "/", .headers = {{"If-None-Match", header}}}, "\"a\"");
+  };
+
+  for (const char* header : {"\"a\"", "W/\"a\"", "\"b\", \"a\"", "\"b\",W/\"a\" ", "*"})
+    EXPECT_TRUE(has(header)) << header;
+  for (const char* header : {"", "a", "\"b\"", "\"A\"", "\"ab\""}) EXPECT_FALSE(has(header)) << header;
+  EXPECT_FALSE(has_tag({.method = "GET", .target = "/"}, "\"a\""));
+}
+
 TEST(Headers, AreFoundWhateverTheirCapitals) {
   const Headers headers{{"Content-Type", "text/plain"}, {"ETag", "1"}, {"etag", "2"}};
 

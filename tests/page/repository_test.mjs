@@ -1,5 +1,7 @@
 // Scenarios, runs, versions and quarantine, as people see them.
 import assert from "node:assert/strict";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { drawn, look, serve, sha256, text } from "./browser.mjs";
 
@@ -44,8 +46,16 @@ test("an operating point is saved, run, and opened again", async () => {
 
   const claim = (await server.call("POST", "/claims", { model: "elrom", worker: "w1", lease_s: 60 })).body;
   await has(page, ".detail", "worked on by w1");
-  await server.call("POST", `/runs/${claim.id}/outcome`, { lease: claim.lease, state: "done", result: { version: "abc", verdict: "inside", reason: "", document: { distance: 0.4 } } });
+  const file = (await server.call("POST", "/predictions", { inputs, fields: ["gas_velocity_x"] }, { Accept: "application/x-hdf5" })).body;
+  assert.equal((await server.call("PUT", `/fields/${sha256(file)}`, file, { "Content-Type": "application/x-hdf5" })).status, 201);
+  await server.call("POST", `/runs/${claim.id}/outcome`, { lease: claim.lease, state: "done", ask: ["el3d"],
+    result: { version: "abc", verdict: "outside", reason: "too much air", document: { distance: 0.4 }, fields: sha256(file) } });
   await has(page, ".detail", "distance");
+  assert.match(await text(page, ".chain"), /ELROM\s+done\s+outside[\s\S]*distance 0.400[\s\S]*too much air/);
+  assert.match(await text(page, ".chain li li"), /EL3D\s+waiting/); // asked by the other, so to its right
+  await page.waitForSelector(".chain figure:not([hidden]) canvas");
+  assert.ok(await page.$eval(".chain canvas", (one) => one.getContext("2d").getImageData(0, 0, one.width, one.height).data.some((byte) => byte > 0)));
+  assert.match(await text(page, ".models"), /ELROM\s+1 done[\s\S]*EL3D\s+1 waiting/);
   await page.locator(".detail .primary").click();
   await drawn(page);
   assert.deepEqual(faults, []);
@@ -83,6 +93,29 @@ test("a reader sees versions and may not promote", async () => {
   await page.evaluate(() => [...document.querySelectorAll(".list button")].find((one) => one.innerText === "Version 2").click());
   await has(page, ".detail", "needs a token with the role admin");
   assert.match(await text(page, ".detail"), /What the gate said[\s\S]*worse/);
+  assert.deepEqual(faults, []);
+});
+
+test("a report opens with its own scripts, which reach nothing", async () => {
+  const digest = (await server.call("GET", "/model")).body.digest;
+  mkdirSync(join(server.folder, "data/reports"), { recursive: true });
+  writeFileSync(join(server.folder, `data/reports/${digest}.html`), `<!doctype html><title>quiet</title><p>no script ran</p>
+    <button onclick="document.title = 'a handler ran'">-</button><script>document.querySelector("p").textContent = "its script ran";</script>`);
+  const { page, browser, faults } = await see("#models", "reader");
+  await has(page, ".detail", "Version 1");
+  await page.locator("#report").click();
+  const report = await (await browser.waitForTarget((one) => one.url().includes("/reports/"), { timeout: 15000 })).page();
+
+  await has(report, "p", "its script ran");
+  await report.click("button");
+  assert.equal(await report.title(), "quiet");
+  assert.equal(await report.evaluate(() => self.origin), "null");
+  assert.deepEqual(await report.evaluate(async () => {
+    const tries = [() => sessionStorage.length, () => fetch("/healthz"), () => new Worker("/page.js"), () => opener.document];
+    const told = [];
+    for (const one of tries) told.push(await Promise.resolve().then(one).then(() => "reached", () => "kept out"));
+    return told;
+  }), ["kept out", "kept out", "kept out", "kept out"]);
   assert.deepEqual(faults, []);
 });
 

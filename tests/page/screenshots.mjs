@@ -27,7 +27,11 @@ async function fill() {
   await run(2, "elrom", { state: "done", result });
   await run(2, "el3d", "running");
   await scenario("Primary air beyond the fan", 2, { "primary_air [kg/s]": 290 });
-  await run(3, "el3d");
+  await run(3, "elrom", { state: "done", ask: ["el3d"], result: { ...result, verdict: "outside", reason: "primary_air 290 kg/s (trained 142 to 228); a run of el3d is asked for", document: { distance: 3.1 } } });
+  const simulated = (await server.call("POST", "/predictions", { inputs: inputs(2) }, { Accept: "application/x-hdf5" })).body;
+  await server.call("PUT", `/fields/${sha256(simulated)}`, simulated, { "Content-Type": "application/x-hdf5" });
+  const claim = (await server.call("POST", "/claims", { model: "el3d", worker: "cluster", lease_s: 600 })).body;
+  await server.call("POST", `/runs/${claim.id}/outcome`, { lease: claim.lease, state: "done", ask: ["elrom-build"], result: { version: "MPPICFoam, OpenFOAM v1912", document: { seconds: 14.2 }, fields: sha256(simulated) } });
   await scenario("Stuck flow meter", 3, { "primary_air [kg/s]": -4 });
   const file = (await server.call("POST", "/predictions", { inputs: inputs(0) }, { Accept: "application/x-hdf5" })).body.slice(0, 400000);
   await server.call("PUT", `/fields/${sha256(file)}`, file, { "Content-Type": "application/x-hdf5" });

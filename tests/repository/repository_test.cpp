@@ -260,7 +260,8 @@ TEST_P(RepositoryOn, ADatabaseOfTheFirstReleaseIsBroughtUpWithAllThatIsInIt) {
   close();
 
   const auto backend = open_backend(options().database, options().folder);
-  const auto row = backend->connect()->query("SELECT value FROM about WHERE key = 'format_minor'", {});
+  const auto connection = backend->connect();  // outlives its rows
+  const auto row = connection->query("SELECT value FROM about WHERE key = 'format_minor'", {});
   ASSERT_TRUE(row->next());
   EXPECT_EQ(row->text(0), std::to_string(schema_steps() - 1)) << "each step is a minor version";
 }

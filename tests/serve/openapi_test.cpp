@@ -118,7 +118,11 @@ class Operation {
     if (path_.starts_with("/results")) fill("{id}", made_result(run));
     if (path_.starts_with("/quarantine")) fill("{id}", made_quarantine());
     if (path_.starts_with("/models")) fill("{id}", "1");
+    if (path_ == "/models/{id}/report" || path_.starts_with("/reports"))
+      test::write_bytes(report_file(), "<p>");
+    if (path_.starts_with("/reports")) fill("/reports/{place}", made_report());
     if (path_ == "/mesh/cut") path_now_ += "?axis=x&at=5.3";
+    if (path_.ends_with("}/cut")) path_now_ += "?axis=x&at=5.3";
     if (path_.starts_with("/tokens"))
       fill("{name}", method_ == "DELETE" ? made_token() : "new" + std::to_string(n_));
     if (path_.starts_with("/fields"))
@@ -170,6 +174,13 @@ class Operation {
         json_of(served_.call("POST", "/scenarios", body.dump()))["quarantine"].get<std::string>();
     return place.substr(place.rfind('/') + 1);
   }
+  /// Where the server keeps it.
+  [[nodiscard]] std::filesystem::path report_file() const {
+    const auto folder = served_.folder / "data/reports";
+    std::filesystem::create_directories(folder);
+    return folder / (model::BundleReader(served_.folder / "model.elrom").digest() + ".html");
+  }
+  std::string made_report() { return json_of(served_.call("POST", "/models/1/report"))["place"]; }
   std::string made_token() {
     const auto name = "token" + std::to_string(n_);
     served_.call("PUT", "/tokens/" + name, R"({"role": "reader"})");
@@ -224,6 +235,11 @@ class Operation {
   http::Response conflict() {
     if (path_ == "/models/current") {
       const base::FileLock at_work(served_.folder / ".lock");
+      return send();
+    }
+    if (path_.ends_with("/report")) {
+      std::filesystem::remove(report_file());
+      const base::FileLock being_made(report_file().parent_path() / ".lock");
       return send();
     }
     (void)send();

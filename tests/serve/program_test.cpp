@@ -105,6 +105,26 @@ TEST(ElromServe, StopsWithoutLosingTheRequestInWork) {
   EXPECT_EQ(ended.get(), 0);
 }
 
+TEST(ElromServe, AnUploadThatItsDeathCutLeavesNothingAndIsSentAgain) {
+  Started started;
+  const auto file = started.call("POST", "/predictions", R"({"inputs": )" + Started::inputs() + "}").body;
+  const auto place = "/fields/" + base::sha256(std::as_bytes(std::span(file)));
+  const auto port = static_cast<unsigned short>(
+      std::stoi(started.serving->url().substr(started.serving->url().rfind(':') + 1)));
+  const test::RawConnection connection(port);
+  connection.send("PUT " + place +
+                  " HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-hdf5\r\nAuthorization: Bearer " +
+                  started.token + "\r\nContent-Length: " + std::to_string(file.size()) + "\r\n\r\n" +
+                  file.substr(0, file.size() / 2));
+
+  started.serving->end(SIGKILL);
+  started.serving->begin();
+
+  EXPECT_EQ(started.call("GET", place).status, 404);
+  EXPECT_EQ(started.call("PUT", place, file, "k", "application/x-hdf5").status, 201);
+  EXPECT_EQ(started.call("GET", place).body, file);
+}
+
 TEST(ElromServe, LooksAtUploadsInAProcessOfItsOwn) {
   Started started;
   const auto file = started.call("POST", "/predictions", R"({"inputs": )" + Started::inputs() + "}").body;

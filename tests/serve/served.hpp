@@ -39,6 +39,7 @@ class Served {
         .model = folder.path(),
         .page = folder / "page",
         .predict_program = ELROM_BIN_DIR "/elrom-predict",
+        .report_program = folder / "report",
         .judge_upload = [](const auto& file, const auto& /*bundle*/) { repository::judge_fields(file, ""); },
         .anonymous = options.anonymous,
         .log =

@@ -205,6 +205,33 @@ TEST(Service, PartsOfAPredictionHaveTheBitsOfAllCells) {
                 all["fields"]["pressure"][kind][static_cast<std::size_t>(cells[i])]);
 }
 
+TEST(Service, KeptFieldsAreShownWhereACutGoesThroughThem) {
+  Served served;
+  auto request = Json{{"inputs", Served::inputs()}, {"fields", {"pressure"}}};
+  const auto file =
+      served.call("POST", "/predictions", request.dump(), {{"Accept", "application/x-hdf5"}}).body;
+  const auto place = "/fields/" + base::sha256(std::as_bytes(std::span(file)));
+  served.call("PUT", place, file, {{"Content-Type", "application/x-hdf5"}});
+  request["cuts"] = {{{"axis", "x"}, {"at", 5.0}}};
+  const auto expected = json_of(served.call("POST", "/predictions", request.dump()));
+
+  const auto cut = served.call("GET", place + "/cut?axis=x&at=5").body;
+  std::uint64_t length = 0;
+  std::memcpy(&length, cut.data(), sizeof length);
+  const auto head = Json::parse(cut.substr(sizeof length, length));
+  ASSERT_EQ(head["fields"], Json({{"pressure", {{"unit", "Pa"}, {"values", {0, 15}}}}}));
+  std::vector<float> values(15);
+  std::memcpy(values.data(), cut.data() + sizeof length + length, 15 * sizeof values[0]);
+
+  EXPECT_EQ(values, expected["fields"]["pressure"]["values"].get<std::vector<float>>());
+  EXPECT_EQ(served.call("GET", place + "/cut?axis=x&at=50").status, 400);
+
+  test::sample_bundle({.n_planes = 6}).write(served.folder / "models/2.elrom");
+  served.call("PUT", "/models/current", R"({"number": 2})");
+  const auto elsewhere = served.call("GET", place + "/cut?axis=x&at=5").body;
+  EXPECT_NE(elsewhere.find("\"fields\":null"), std::string::npos);
+}
+
 TEST(Service, ACutThatMissesTheFurnaceIsToldWhereItLies) {
   Served served;
   auto request = Json{{"inputs", Served::inputs()}, {"cuts", {{{"axis", "z"}, {"at", 47.5}}}}};

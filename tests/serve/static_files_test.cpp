@@ -9,9 +9,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::optional<http::Response> get(const test::TemporaryFolder& folder, const std::string& target) {
+std::optional<http::Response> get(const test::TemporaryFolder& folder, const std::string& target,
+                                  const std::string& tag = "") {
   const auto parsed = http::parse_target(target);
-  return parsed ? static_file(folder / "page", *parsed) : std::nullopt;
+  const http::Request request{.method = "GET", .target = target, .headers = {{"If-None-Match", tag}}};
+  return parsed ? static_file(folder / "page", *parsed, request) : std::nullopt;
 }
 
 TEST(StaticFiles, AreSentWithTheirTypeAndAStrictPolicy) {
@@ -25,6 +27,21 @@ TEST(StaticFiles, AreSentWithTheirTypeAndAStrictPolicy) {
   const auto policy = *get(folder, "/")->header("Content-Security-Policy");
   EXPECT_THAT(policy, HasSubstr("default-src 'none'"));
   EXPECT_THAT(policy, ::testing::Not(HasSubstr("unsafe")));
+}
+
+TEST(StaticFiles, AreNotSentAgainUntilTheyChange) {
+  const test::TemporaryFolder folder;
+  folder.write("page/a.js", "1");
+  const auto tag = *get(folder, "/a.js")->header("ETag");
+
+  const auto again = get(folder, "/a.js", tag);
+  EXPECT_EQ(again->status, 304);
+  EXPECT_EQ(again->body, "");
+  EXPECT_EQ(*again->header("ETag"), tag);
+
+  folder.write("page/a.js", "22");
+  EXPECT_EQ(get(folder, "/a.js", tag)->status, 200);
+  EXPECT_EQ(get(folder, "/a.js", tag)->body, "22");
 }
 
 TEST(StaticFiles, NothingOutsideTheFolderIsSent) {

@@ -44,6 +44,9 @@ struct Target {
 /// escapes, control characters, "." or ".." or a slash inside a segment.
 [[nodiscard]] std::optional<Target> parse_target(std::string_view target);
 
+/// Whether the request's If-None-Match names the ETag: what is asked for is there already (RFC 9110, 13.1.2).
+[[nodiscard]] bool has_tag(const Request& request, std::string_view tag);
+
 /// "Not Found"; "" for a status that has no name.
 [[nodiscard]] std::string_view reason_of(int status);
 

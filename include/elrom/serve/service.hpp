@@ -21,6 +21,7 @@ struct ServiceOptions {
   std::filesystem::path model;            ///< a bundle's file or a study's folder; may come to be later
   std::filesystem::path page;             ///< folder of a page's files; empty: none
   std::filesystem::path predict_program;  ///< elrom-predict, which writes files; empty: none are offered
+  std::filesystem::path report_program;   ///< elrom-report, which makes reports; empty: none are made
   std::filesystem::path openfoam_case;    ///< that starts are made for; empty: none
   /// Looks at an uploaded file of fields, as repository::judge_fields() does, where its crash is no harm.
   /// @param bundle whose mesh and furnace it must be of; empty: there is no model yet

@@ -75,6 +75,12 @@ export async function cut(axis, at, mesh) {
   return cuts.get(key);
 }
 
+/// Values of a kept file along a cut, in the order of its polygons: { name: values }; empty: it is on another mesh.
+export async function fieldsCut(digest, axis, at) {
+  const { head, floats } = unframed(await (await ask("GET", `/fields/${digest}/cut?axis=${axis}&at=${at}`, { accept: binary })).arrayBuffer());
+  return Object.fromEntries(Object.entries(head.fields ?? {}).map(([name, of]) => [name, floats(of.values)]));
+}
+
 async function save(response, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(await response.blob());

@@ -48,15 +48,28 @@ export class ModelsView extends ListView {
     this.detail.replaceChildren(h("section", { class: "panel" },
       h("h2", {}, `Version ${one.number}`),
       h("p", {}, `Made by “${one.by ?? "unknown"}” from ${one.cases ?? "?"} cases with ${one.program}. `, h("span", { class: "muted" }, short(one.digest))),
-      !one.answers && h("div", { class: "actions" }, this.shared.may("admin")
-        ? h("button", { type: "button", class: "primary", id: "promote", onclick: () => this.promote(one) }, "Promote: let this version answer")
-        : h("p", { class: "muted" }, "Promoting a version needs a token with the role admin.")),
+      h("div", { class: "actions" },
+        !one.answers && this.shared.may("admin") && h("button", { type: "button", class: "primary", id: "promote", onclick: () => this.promote(one) }, "Promote: let this version answer"),
+        h("button", { type: "button", id: "report", onclick: () => this.openReport(one) }, one.answers ? "Open its full report" : "Open its comparison with the version that answers")),
+      !one.answers && !this.shared.may("admin") && h("p", { class: "muted" }, "Promoting a version needs a token with the role admin."),
       one.verdict && [h("h3", {}, "What the gate said"), gateTable(one.verdict)],
       h("h3", {}, "Error in cross-validation"),
       h("p", { class: "muted" }, "NRMSE: 0 is perfect, 1 is the mean of the training cases."),
       table(["Field", "ELROM", "Made of", "Best single method"], accuracy.map(accuracyRow), "This bundle tells no errors."),
       h("details", {}, h("summary", {}, "Settings and origin"),
         h("pre", {}, [one.settings, ...Object.entries(one.provenance ?? {}).map(([key, value]) => `# ${key}: ${value}`)].join("\n")))));
+  }
+
+  /// In a tab of its own, which browsers open only at once; its place needs no token.
+  async openReport(one) {
+    const tab = window.open();
+    notice("elrom-report is asked for it; the first time it takes up to a minute.");
+    try {
+      (tab ?? window).location.href = (await api.post(`/models/${one.number}/report`)).place;
+    } catch (error) {
+      tab?.close();
+      notice(error.message, "bad");
+    }
   }
 
   async promote(one) {

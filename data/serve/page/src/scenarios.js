@@ -1,10 +1,11 @@
 // Scenarios: operating points that were saved, and what the models make of them.
 import * as api from "./api.js";
+import { chain, modelName, modelNames, modelStates } from "./chain.js";
 import { chip, h, notice, table } from "./dom.js";
 import { ListView } from "./list_view.js";
 import { number, percent, plain, short, time, unitText } from "./words.js";
 
-const models = { elrom: "ELROM", el3d: "EL3D" };
+const askable = ["elrom", "el3d"];
 const period = 2000; // ms between two looks at runs that are not over
 
 export class ScenariosView extends ListView {
@@ -20,6 +21,7 @@ export class ScenariosView extends ListView {
   /// Shows anew only what is new: whoever reads keeps his place.
   async load() {
     [this.scenarios, this.runs] = await Promise.all([api.list("/scenarios"), api.list("/runs")]);
+    if (this.model === undefined) await this.learnModel();
     const seen = JSON.stringify([this.scenarios, this.runs]);
     if (seen !== this.seen) {
       this.seen = seen;
@@ -32,18 +34,23 @@ export class ScenariosView extends ListView {
     if (open && !this.closed) this.timer = setTimeout(() => this.load().catch(() => {}), period);
   }
 
+  /// Whose mesh pictures are drawn on; asking for one where there is none would be a fault in the browser's console.
+  async learnModel() {
+    this.model = (await api.get("/healthz")).model ? await api.get("/model") : null;
+  }
+
   row(one) {
     const last = this.runs.filter((run) => run.scenario === one.id)[0];
     return h("tr", { class: one.id === this.chosen ? "chosen" : "", onclick: () => this.choose(one.id) },
       h("td", {}, h("button", { type: "button", class: "link", "aria-current": one.id === this.chosen ? "true" : null }, one.name)),
       h("td", { class: "number" }, one.load === null ? "–" : percent(one.load)),
       h("td", {}, chip(one.verdict, one.verdict ?? "not judged")),
-      h("td", {}, last ? [chip(last.state), ` ${last.model}`] : h("span", { class: "muted" }, "no run")),
+      h("td", {}, last ? [chip(last.state), ` ${modelName(last.model)}`] : h("span", { class: "muted" }, "no run")),
       h("td", { class: "muted wide" }, time(one.at)));
   }
 
   showList() {
-    this.list.replaceChildren(table(["Name", "Load", "Guard", "Last run", h("span", { class: "wide" }, "Saved")],
+    this.list.replaceChildren(modelStates(this.runs), table(["Name", "Load", "Guard", "Last run", h("span", { class: "wide" }, "Saved")],
       this.scenarios.map((one) => this.row(one)), "No scenario yet. Move the sliders in Live, then “Save as scenario”."));
   }
 
@@ -66,8 +73,8 @@ export class ScenariosView extends ListView {
       one.note && h("p", {}, one.note),
       one.verdict === "outside" && h("p", { class: "muted" }, "ELROM was not trained for this: EL3D can say what happens here, and ELROM can learn it from that."),
       h("div", { class: "actions" }, h("button", { type: "button", class: "primary", onclick: () => this.shared.openPoint(one) }, "Open in Live"),
-        this.shared.may("model") && Object.entries(models).map(([model, name]) =>
-          h("button", { type: "button", onclick: () => this.ask(one, model) }, `Run ${name}`))),
+        this.shared.may("model") && askable.map((model) => h("button", { type: "button", onclick: () => this.ask(one, model) }, `Run ${modelNames[model]}`))),
+      runs.length > 0 && [h("h3", {}, "Chain"), chain(runs, results, this.model)],
       h("h3", {}, "Runs"), table(["Run", "Model", "State", "Since", "What happened"], runs.map(runRow), "No model was asked yet."),
       h("h3", {}, "Results"), results.length ? results.map(resultCard) : h("p", { class: "empty" }, "Nothing came back yet."),
       h("details", {}, h("summary", {}, "Boundary conditions (SI)"), inputsTable(one.inputs))));
@@ -85,14 +92,14 @@ export class ScenariosView extends ListView {
 }
 
 function runRow(run) {
-  return h("tr", {}, h("td", { class: "number" }, run.id), h("td", {}, run.model), h("td", {}, chip(run.state)),
+  return h("tr", {}, h("td", { class: "number" }, run.id), h("td", {}, modelName(run.model)), h("td", {}, chip(run.state)),
     h("td", { class: "muted" }, time(run.at)), h("td", {}, run.reason ?? (run.worker ? `worked on by ${run.worker}` : "–")));
 }
 
 function resultCard(result) {
   const facts = Object.entries(result.document ?? {}).filter(([, value]) => typeof value !== "object");
   return h("article", { class: "card" },
-    h("p", {}, h("strong", {}, result.model), " ", chip(result.verdict, result.verdict ?? "no verdict"), " ",
+    h("p", {}, h("strong", {}, modelName(result.model)), " ", chip(result.verdict, result.verdict ?? "no verdict"), " ",
       h("span", { class: "muted" }, `${time(result.at)}, version ${short(result.version)}`)),
     result.reason && h("p", {}, plain(result.reason)),
     facts.length > 0 && h("dl", {}, facts.map(([name, value]) => [h("dt", {}, plain(name)), h("dd", {}, typeof value === "number" ? number(value, 4) : String(value))])),
