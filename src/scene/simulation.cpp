@@ -146,6 +146,7 @@ Simulation::Simulation(SceneSettings settings, int n_threads)
   state_.particles.are_parcels = settings_.has_parcels();
   state_.particles.rotates = settings_.rotation;
   state_.particles.remembers_birth = domain_.has_outlets();
+  state_.particles.remembers_walls = domain_.has_walls();
   state_.particles.remembers_hits = m.collisions == Collisions::helscm && m.contact_time > 0;
   place_groups();
   add_forces();
@@ -316,7 +317,8 @@ std::vector<EffectCost> Simulation::costs() const {
   const auto steps = static_cast<double>(settings_.n_steps());
   std::vector<EffectCost> costs{{.name = "particles",
                                  .bytes_estimated = n * ((settings_.rotation ? 108.0 : 84.0) +
-                                                         (state_.particles.remembers_birth ? 8.0 : 0.0)),
+                                                         (state_.particles.remembers_birth ? 8.0 : 0.0) +
+                                                         (state_.particles.remembers_walls ? 8.0 : 0.0)),
                                  .bytes = static_cast<double>(state_.particles.bytes())}};
   if (has_forces_) {
     double held = 0;
