@@ -9,6 +9,7 @@
 
 #include "elrom/particle/drag.hpp"
 #include "elrom/scene/simulation.hpp"
+#include "scene_beds.hpp"
 #include "support/benchmark.hpp"
 
 namespace {
@@ -150,10 +151,8 @@ Json haff(double restitution, const std::vector<double>& expected, bool small) {
   return rows;
 }
 
-Json measure(const benchmark::Arguments& arguments) {
-  Json json;
-  const Json table =
-      crossing_streams(arguments.small);  // of its own: a reference would not outlive the next key
+void measure_streams(bool small, Json& json) {
+  const Json table = crossing_streams(small);  // of its own: a reference would not outlive the next key
   json["crossing_streams"] = table;
   const double seconds_dem = table[0]["seconds"];
   json["dem_seconds_over_swept_seconds"] = seconds_dem / table[2]["seconds"].get<double>();
@@ -163,18 +162,47 @@ Json measure(const benchmark::Arguments& arguments) {
     most = std::max(most, table[k]["collisions"].get<double>());
   }
   json["helscm_spread_of_counts"] = most / least - 1;
-  json["helscm_counts_of_twins"] = counts_by_step(arguments.small ? 800 : 12000, 4);
-  json["haff_e_0.8"] = haff(0.8, {0.983438, 0.851252, 0.638403, 0.295837}, arguments.small);
-  json["haff_e_0.9"] = haff(0.9, {0.991210, 0.917064, 0.779390, 0.480650}, arguments.small);
-  const double n = arguments.small ? 800 : 12000;
+  json["helscm_counts_of_twins"] = counts_by_step(small ? 800 : 12000, 4);
+  const double n = small ? 800 : 12000;
   json["swept_sphere_steps_per_second"] = n * 12000 / table[4]["seconds"].get<double>();
-  return json;
+}
+
+void measure(const std::string& part, const benchmark::Arguments& arguments,
+             const std::vector<std::string>& changes, Json& json) {
+  if (part == "streams")
+    measure_streams(arguments.small, json);
+  else if (part == "haff") {
+    json["haff_e_0.8"] = haff(0.8, {0.983438, 0.851252, 0.638403, 0.295837}, arguments.small);
+    json["haff_e_0.9"] = haff(0.9, {0.991210, 0.917064, 0.779390, 0.480650}, arguments.small);
+  } else if (part == "beds")
+    json["beds"] = benchmark::straight_beds(arguments.small, "hel", changes);
+  else if (part == "beds_dem")
+    json["beds_dem"] = benchmark::straight_beds(arguments.small, "dem", changes);
+  else if (part == "cfb")
+    json["cfb"] = benchmark::small_cfb(arguments.small, changes);
+  else
+    throw UsageError(Problem{.what = "unknown part", .found = "'" + part + "'"});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return elrom::benchmark::benchmark_main("bench-scenes",
-                                          "Spheres in scenes: counts, energy, seconds by model and step.",
-                                          "not used", argc, argv, measure);
+  using namespace elrom;
+  return base::run_app("bench-scenes", [&] {
+    benchmark::CommandLine line("Spheres in scenes: counts, energy, pressure, seconds by model and step.");
+    benchmark::Arguments arguments;
+    arguments.add_to(line, "not used");
+    std::vector<std::string> parts{"streams", "haff"}, changes;
+    line.add_list("--parts", parts, "streams, haff, beds, beds_dem, cfb");
+    line.add_repeated("--set", changes, "key=value: a setting of the scenes of files; repeatable");
+    if (const auto status = line.parse(argc, argv)) return *status;
+    Json json;
+    for (const auto& part : parts) measure(part, arguments, changes, json);
+    json["program"] = program_version();
+    json["small"] = arguments.small;
+    const auto text = json.dump(1) + "\n";
+    std::fputs(text.c_str(), stdout);
+    if (!arguments.json.empty()) base::write_text(arguments.json, text);
+    return 0;
+  });
 }
