@@ -19,9 +19,11 @@ class Balance {
   Balance(const Simulation& simulation, double from)
       : simulation_(simulation), from_(from), mass_(mass_of(simulation.state().particles)) {
     const auto& grid = simulation.flow()->grid();
-    area_.assign(grid.count()[2], 0);
+    in_layer_ = grid.count()[0] * grid.count()[1];
+    for (auto* values : {&area_, &layer_pressure_, &layer_head_, &layer_mass_, &layer_momentum_})
+      values->assign(grid.count()[2], 0);
     for (std::size_t c = 0; c < grid.size(); ++c)
-      if (grid.is_open(c)) area_[c / (grid.count()[0] * grid.count()[1])] += grid.space(c) / grid.step()[2];
+      if (grid.is_open(c)) area_[c / in_layer_] += grid.space(c) / grid.step()[2];
   }
 
   // After a step.
@@ -49,18 +51,40 @@ class Balance {
             {"gas_lifts_of_weight", lift_ / weight_},
             {"walls_lift_of_weight", (walls_ - lift_ + weight_) / weight_},
             {"mass_error", mass / mass_ - 1},
-            {"left", simulation_.state().tally.left}};
+            {"left", simulation_.state().tally.left},
+            {"planes", planes()}};
+  }
+  // Each layer of cells: pressure at its middle, and the weight of what lies above over the areas there.
+  [[nodiscard]] Json planes() const {
+    const auto& grid = simulation_.flow()->grid();
+    Json rows = Json::array();
+    double above = 0;
+    for (std::size_t k = area_.size(); k-- > 0;) {
+      const double own = layer_head_[k] / static_cast<double>(n_);
+      rows.push_back({{"z_m", grid.centre(k * in_layer_).z},
+                      {"pressure_pa", layer_pressure_[k] / static_cast<double>(n_)},
+                      {"weight_above_pa", above + 0.5 * own},
+                      {"solids_m_per_s", layer_mass_[k] > 0 ? layer_momentum_[k] / layer_mass_[k] : 0}});
+      above += own;
+    }
+    return rows;
   }
 
  private:
   void weigh(const State& s) {
     const auto& p = s.particles;
+    const auto& grid = simulation_.flow()->grid();
+    for (std::size_t c = 0; c < grid.size(); ++c)
+      if (grid.is_open(c))
+        layer_pressure_[c / in_layer_] +=
+            simulation_.flow()->pressure()[c] * grid.space(c) / (area_[c / in_layer_] * grid.step()[2]);
     const double g = -simulation_.settings().gravity.z, gas = simulation_.settings().gas_properties.density;
     for (std::size_t i = 0; i < p.size(); ++i) {
       const double weight = p.mass[i] * g * (1 - gas / p.density[i]);
-      const auto layer = simulation_.flow()->grid().cell_at(get(p.place, i)) /
-                         (simulation_.flow()->grid().count()[0] * simulation_.flow()->grid().count()[1]);
+      const auto layer = grid.cell_at(get(p.place, i)) / in_layer_;
       weight_ += weight;
+      layer_head_[layer] += weight / area_[layer];
+      layer_mass_[layer] += p.mass[i], layer_momentum_[layer] += p.mass[i] * p.velocity[2][i];
       head_ += weight / area_[layer];
       if (i < s.push[2].size()) lift_ += p.mass[i] * s.push[2][i] + weight;
     }
@@ -68,7 +92,9 @@ class Balance {
 
   const Simulation& simulation_;
   double from_, mass_, before_ = 0;
+  std::size_t in_layer_ = 1;  // cells
   std::vector<double> area_;  // of each layer of cells, m2
+  std::vector<double> layer_pressure_, layer_head_, layer_mass_, layer_momentum_;  // sums over time
   std::int64_t n_ = 0;
   double pressure_ = 0, head_ = 0, weight_ = 0, lift_ = 0, walls_ = 0;
 };
