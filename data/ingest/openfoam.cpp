@@ -120,25 +120,6 @@ Parcels read_parcels(const fs::path& cloud, std::size_t n_cells) {
   return parcels;
 }
 
-/// internalField of a volume field, (n_cells, 1 or 3).
-MatrixD read_internal_field(const fs::path& path, std::size_t n_cells, int n_components) {
-  foam::FoamFile file(path);
-  file.seek_required("internalField");
-  const auto rows = static_cast<Eigen::Index>(n_cells);
-  const auto kind = file.token();
-  if (kind == "uniform") {
-    MatrixD value(1, n_components);
-    if (n_components == 3) file.expect("(");
-    for (int d = 0; d < n_components; ++d) value(0, d) = file.number();
-    return value.replicate(rows, 1);
-  }
-  if (kind != "nonuniform") file.fail("'" + std::string(kind) + "'", "uniform or nonuniform");
-  file.token();  // List<scalar> or List<vector>; the entries' brackets tell
-  if (n_components == 3) return file.vectors(n_cells);
-  const auto values = file.scalars(n_cells);
-  return Eigen::Map<const MatrixD>(values.data(), rows, 1);
-}
-
 /// Sums over instants.
 class Averages {
  public:
@@ -155,8 +136,8 @@ class Averages {
 
   void add(const Instant& instant, const std::string& gas) {
     const auto n_cells = static_cast<std::size_t>(n_);
-    const auto velocity = read_internal_field(instant.folder / ("U." + gas), n_cells, 3);
-    const auto pressure = read_internal_field(instant.folder / "p", n_cells, 1);
+    const auto velocity = foam::read_internal_field(instant.folder / ("U." + gas), n_cells, 3);
+    const auto pressure = foam::read_internal_field(instant.folder / "p", n_cells, 1);
     const Eigen::VectorXd fraction = add_parcels(read_parcels(find_cloud(instant.folder), n_cells));
     const Eigen::VectorXd gas_fraction = 1.0 - fraction.array();
     gas_momentum_ += gas_fraction.asDiagonal() * velocity;

@@ -260,4 +260,22 @@ void FoamFile::fail(std::string_view found, std::string_view expected) const {
                     .expected = std::string(expected)});
 }
 
+MatrixD read_internal_field(const std::filesystem::path& path, std::size_t n_cells, int n_components) {
+  FoamFile file(path);
+  file.seek_required("internalField");
+  const auto rows = static_cast<Eigen::Index>(n_cells);
+  const auto kind = file.token();
+  if (kind == "uniform") {
+    MatrixD value(1, n_components);
+    if (n_components == 3) file.expect("(");
+    for (int d = 0; d < n_components; ++d) value(0, d) = file.number();
+    return value.replicate(rows, 1);
+  }
+  if (kind != "nonuniform") file.fail("'" + std::string(kind) + "'", "uniform or nonuniform");
+  file.token();  // List<scalar> or List<vector>; the entries' brackets tell
+  if (n_components == 3) return file.vectors(n_cells);
+  const auto values = file.scalars(n_cells);
+  return Eigen::Map<const MatrixD>(values.data(), rows, 1);
+}
+
 }  // namespace elrom::foam

@@ -65,6 +65,7 @@ void set_particles(io::TensorFile& file, const std::string& prefix, const Partic
   file.set(prefix + "group", row(reals(p.group)));
   if (p.remembers_hits) file.set(prefix + "last_hit", row(p.last_hit));
   if (p.remembers_birth) file.set(prefix + "born", row(p.born));
+  if (p.remembers_walls) file.set(prefix + "touched", row(reals(p.touched)));
 }
 
 // @param p says whether spheres rotate and remember
@@ -80,6 +81,9 @@ Particles read_particles(const io::TensorFile& file, const std::string& prefix, 
   p.group = read_whole<std::int32_t>(file, prefix + "group", n);
   if (p.remembers_hits) p.last_hit = read_row(file, prefix + "last_hit", n);
   if (p.remembers_birth) p.born = read_row(file, prefix + "born", n);
+  if (p.remembers_walls)
+    p.touched = file.has(prefix + "touched") ? read_whole<std::uint64_t>(file, prefix + "touched", n)
+                                             : std::vector<std::uint64_t>(n);
   if (p.are_parcels) p.weight = read_row(file, prefix + "weight", n);
   p.mass.clear(), p.contact.clear();
   for (std::size_t i = 0; i < n; ++i) {
@@ -156,6 +160,7 @@ void Simulation::load(const io::TensorFile& file) {
   empty.remembers_hits = state.particles.remembers_hits;
   empty.are_parcels = state.particles.are_parcels;
   empty.remembers_birth = state.particles.remembers_birth;
+  empty.remembers_walls = state.particles.remembers_walls;
   state.particles = read_particles(file, "", state.n_groups, empty);
   state.waiting.clear();
   const auto waiting = read_particles(file, "waiting_", state.n_groups, particles_of({}, empty.are_parcels));

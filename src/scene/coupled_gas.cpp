@@ -46,14 +46,6 @@ class CoupledGas final : public Effect {
     Vec expected;   // velocity without drag at the end of the step
   };
 
-  [[nodiscard]] static Vec at(const FaceValues& values, const std::array<Shares, 3>& faces) {
-    std::array<double, 3> sum{};
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t k = 0; k < 8; ++k)
-        sum[a] += faces[a].weight[k] * values[a][static_cast<std::size_t>(faces[a].of[k])];
-    return {sum[0], sum[1], sum[2]};
-  }
-
   void answer(const State& state, const FaceValues& gradient, double dt) {
     const auto& p = state.particles;
     base::parallel_for((p.size() + block_size - 1) / block_size, n_threads_, [&](std::size_t block, int) {
@@ -61,12 +53,12 @@ class CoupledGas final : public Effect {
         auto& s = sides_[i];
         const Vec place = get(p.place, i), v = get(p.velocity, i);
         for (std::size_t a = 0; a < 3; ++a) s.faces[a] = flow_.grid().faces(place, a);
-        const Vec slip = at(flow_.velocity(), s.faces) - v;
+        const Vec slip = read(flow_.velocity(), s.faces) - v;
         const double voidage = std::max(least_voidage, 1 - solids_.fraction_at(i));
         const double k =
             particle::drag_rate(law_, p.diameter[i], std::sqrt(dot(slip, slip)), voidage, flow_.gas());
         s.answer = k / (1 + dt * k / p.sphere_mass(i));
-        s.expected = v + dt * (get(state.push, i) - (1 / p.density[i]) * at(gradient, s.faces));
+        s.expected = v + dt * (get(state.push, i) - (1 / p.density[i]) * read(gradient, s.faces));
       }
     });
   }
@@ -96,8 +88,8 @@ class CoupledGas final : public Effect {
     const auto gradient = flow_.pressure_gradient();
     for (std::size_t i = 0; i < p.size(); ++i) {
       const auto& s = sides_[i];
-      const Vec drag = (s.answer / p.sphere_mass(i)) * (at(flow_.mean_velocity(), s.faces) - s.expected);
-      set(state.push, i, get(state.push, i) + drag - (1 / p.density[i]) * at(gradient, s.faces));
+      const Vec drag = (s.answer / p.sphere_mass(i)) * (read(flow_.mean_velocity(), s.faces) - s.expected);
+      set(state.push, i, get(state.push, i) + drag - (1 / p.density[i]) * read(gradient, s.faces));
     }
   }
 

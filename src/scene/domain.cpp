@@ -180,10 +180,29 @@ double Domain::area_of(const Side& side) const {
   return 0;
 }
 
-bool Domain::has_outlets() const {
-  return std::ranges::any_of(bodies_, [](const Body& body) {
-    return std::ranges::any_of(body.sides, [](const Side& side) { return side.kind == SideKind::outlet; });
+bool Domain::has(SideKind kind) const {
+  return std::ranges::any_of(bodies_, [&](const Body& body) {
+    return std::ranges::any_of(body.sides, [&](const Side& side) { return side.kind == kind; });
   });
+}
+
+std::size_t Domain::number_of(const Side& side) const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto* first = bodies_[b].sides.data();
+    if (&side >= first && &side < first + 6) return 6 * b + static_cast<std::size_t>(&side - first);
+  }
+  return 0;
+}
+
+std::uint64_t Domain::nearer(std::uint64_t sides, const Vec& place, double than) const {
+  std::uint64_t left = 0;
+  if (sides == 0) return left;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto mine = one << (6 * b + k) % n_bits;
+      if ((sides & mine) != 0 && bodies_[b].sides[k].distance(place) < than) left |= mine;
+    }
+  return left;
 }
 
 Vec Domain::wrapped(Vec p) const {

@@ -48,6 +48,7 @@ GasFlow::GasFlow(const Domain& domain, std::shared_ptr<CellGrid> grid, const par
     velocity_[a].assign(grid_->face_count(a), 0), mean_[a] = before_[a] = hold_[a] = velocity_[a];
   find_faces(domain, inlets);
   scale_inlets(domain, inlets);
+  entry_.assign(static_cast<std::size_t>(std::ranges::count(faces_, Face::Kind::inlet, &Face::kind)), 0);
   equation_ = std::make_unique<Equation>(Equation{CellEquation(*grid_), make_eigen_solver(*grid_)});
 }
 GasFlow::~GasFlow() = default;
@@ -202,7 +203,18 @@ void GasFlow::advance(double dt, const GasLoad& load) {
     left -= h;
     ++n_steps_;
   }
+  find_entry(load);
   look(load);
+}
+
+void GasFlow::find_entry(const GasLoad& load) {
+  entry_.clear();
+  for (const auto& face : faces_) {
+    if (face.kind != Face::Kind::inlet) continue;
+    const auto a = face.axis, f = face.number;
+    const double drag = load.exchange[a][f] * velocity_[a][f] - load.exchange_flux[a][f];
+    entry_.push_back(force_[a] - drag / gap(face, load));
+  }
 }
 
 double GasFlow::gap(const Face& face, const GasLoad& load) const {
@@ -325,13 +337,11 @@ void GasFlow::project(const GasLoad& load) {
 FaceValues GasFlow::pressure_gradient() const {
   FaceValues gradient;
   for (std::size_t a = 0; a < 3; ++a) gradient[a].assign(grid_->face_count(a), 0);
-  for (const auto& face : faces_)
-    if (face.kind != Face::Kind::inlet) gradient[face.axis][face.number] = drop(face, pressure_);
-  // At an inlet as on the other side of its cell.
-  for (const auto& face : faces_)
-    if (face.kind == Face::Kind::inlet)
-      gradient[face.axis][face.number] =
-          gradient[face.axis][static_cast<std::size_t>(face.along[face.low == none ? 1 : 0])];
+  auto entry = entry_.begin();
+  for (const auto& face : faces_) {
+    const bool is_inlet = face.kind == Face::Kind::inlet;
+    gradient[face.axis][face.number] = is_inlet ? *entry++ : drop(face, pressure_);
+  }
   return gradient;
 }
 
@@ -376,6 +386,7 @@ std::size_t GasFlow::bytes() const {
 
 void GasFlow::save(io::TensorFile& file) const {
   file.set("gas_pressure", io::Tensor::copy(pressure_, {pressure_.size()}));
+  file.set("gas_inlet_gradient", io::Tensor::copy(entry_, {entry_.size()}));
   for (std::size_t a = 0; a < 3; ++a)
     file.set("gas_velocity_" + std::string(1, "xyz"[a]),
              io::Tensor::copy(velocity_[a], {velocity_[a].size()}));
@@ -390,6 +401,7 @@ void GasFlow::load(const io::TensorFile& file) {
           .what = "a damaged checkpoint", .where = file.where() + ":" + name, .expected = "finite numbers"});
   };
   read("gas_pressure", pressure_);
+  if (file.has("gas_inlet_gradient")) read("gas_inlet_gradient", entry_);
   for (std::size_t a = 0; a < 3; ++a) read("gas_velocity_" + std::string(1, "xyz"[a]), velocity_[a]);
 }
 

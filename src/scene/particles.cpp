@@ -13,7 +13,7 @@ void for_each_array(P& p, const F& f) {
   for (auto* vectors : {&p.place, &p.velocity, &p.spin})
     for (auto& component : *vectors) f(component);
   f(p.diameter), f(p.density), f(p.mass), f(p.id), f(p.group), f(p.last_hit), f(p.weight), f(p.contact),
-      f(p.born);
+      f(p.born), f(p.touched);
 }
 
 }  // namespace
@@ -31,6 +31,7 @@ void Particles::add(const Sphere& s) {
   mass.push_back(s.weight * particle::sphere_mass(s.diameter, s.density));
   if (are_parcels) weight.push_back(s.weight), contact.push_back(s.diameter * std::sqrt(s.weight));
   if (remembers_birth) born.push_back(s.born);
+  if (remembers_walls) touched.push_back(0);
   id.push_back(s.id);
   group.push_back(s.group);
 }

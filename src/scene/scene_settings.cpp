@@ -162,7 +162,9 @@ void add_gas_rows(Table& t) {
   t.vector(
       "gas.velocity", "of a uniform gas", [](auto& s) -> auto& { return s.gas_velocity; }, "m/s");
   t.word(
-      "gas.file", "of a frozen gas: a prediction (.hdf)", [](auto& s) -> auto& { return s.gas_file; });
+      "gas.file",
+      "of a frozen gas: a prediction (.hdf), a case of OpenFOAM or the folder of a run with a coupled gas",
+      [](auto& s) -> auto& { return s.gas_file; });
   t.vector(
       "grid.cell", "size of a cell: hel, coupled gas, drag that asks for the voidage",
       [](auto& s) -> auto& { return s.cell; }, "m");
@@ -339,6 +341,12 @@ bool SceneSettings::has_parcels() const {
 bool SceneSettings::needs_grid() const {
   const bool knows_voidage = drag != "none" && particle::needs_voidage(drag_names.value<UsageError>(drag));
   return gas == "coupled" || collisions == "hel" || knows_voidage;
+}
+
+Domain SceneSettings::domain() const {
+  std::vector<Body> bodies;
+  for (const auto& box : boxes) bodies.push_back(box.body());
+  return Domain(std::move(bodies), outlets, openings, periodic);
 }
 
 std::int64_t SceneSettings::n_steps() const {

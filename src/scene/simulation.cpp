@@ -10,17 +10,12 @@
 #include "elrom/base/stopwatch.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/particle/exact_model.hpp"
+#include "frozen_gas.hpp"
 
 namespace elrom::scene {
 namespace {
 
 constexpr double usual_overlap = 0.01;  // of the smallest sphere, at twice the fastest speed of the beginning
-
-Domain domain_of(const SceneSettings& s) {
-  std::vector<Body> bodies;
-  for (const auto& box : s.boxes) bodies.push_back(box.body());
-  return Domain(std::move(bodies), s.outlets, s.openings, s.periodic);
-}
 
 double fastest_of(const SceneSettings& s) {
   double fastest = 1;
@@ -140,12 +135,13 @@ std::string digest_of(const SceneSettings& settings) {
 }
 
 Simulation::Simulation(SceneSettings settings, int n_threads)
-    : settings_(std::move(settings)), n_threads_(n_threads), domain_(domain_of(settings_)) {
+    : settings_(std::move(settings)), n_threads_(n_threads), domain_(settings_.domain()) {
   if (settings_.needs_grid()) grid_ = std::make_shared<CellGrid>(domain_, settings_.cell);
   const auto m = mover_of(settings_, grid_, n_threads_);
   state_.particles.are_parcels = settings_.has_parcels();
   state_.particles.rotates = settings_.rotation;
   state_.particles.remembers_birth = domain_.has_outlets();
+  state_.particles.remembers_walls = domain_.has_walls();
   state_.particles.remembers_hits = m.collisions == Collisions::helscm && m.contact_time > 0;
   place_groups();
   add_forces();
@@ -219,13 +215,11 @@ void Simulation::add_forces() {
 void Simulation::add_gas(DragLaw law) {
   const auto& s = settings_;
   if (s.gas == "coupled") {
-    std::vector<GasInlet> inlets;
-    for (const auto& inlet : s.gas_inlets) inlets.push_back({inlet.side, inlet.velocity});
-    flow_ = std::make_unique<GasFlow>(domain_, grid_, s.gas_properties, inlets);
+    flow_ = flow_of(s, domain_, grid_);
     add(coupled_gas(law, *flow_, n_threads_));
     return;
   }
-  gas_ = s.gas == "frozen" ? frozen_gas(s.folder / s.gas_file, n_threads_) : uniform_gas(s.gas_velocity);
+  gas_ = s.gas == "frozen" ? frozen_gas_of(s.folder / s.gas_file, n_threads_) : uniform_gas(s.gas_velocity);
   add(drag(law, s.gas_properties, *gas_, particle::needs_voidage(law) ? grid_ : nullptr, n_threads_));
 }
 
@@ -316,7 +310,8 @@ std::vector<EffectCost> Simulation::costs() const {
   const auto steps = static_cast<double>(settings_.n_steps());
   std::vector<EffectCost> costs{{.name = "particles",
                                  .bytes_estimated = n * ((settings_.rotation ? 108.0 : 84.0) +
-                                                         (state_.particles.remembers_birth ? 8.0 : 0.0)),
+                                                         (state_.particles.remembers_birth ? 8.0 : 0.0) +
+                                                         (state_.particles.remembers_walls ? 8.0 : 0.0)),
                                  .bytes = static_cast<double>(state_.particles.bytes())}};
   if (has_forces_) {
     double held = 0;

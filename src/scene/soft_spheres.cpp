@@ -63,10 +63,10 @@ class SoftSpheres final : public Mover {
     n_steps_ = static_cast<std::size_t>(std::max(1.0, std::ceil(dt / longest_step(p) * (1 - 1e-12))));
     const double h = dt / static_cast<double>(n_steps_);
     pack(p);
-    if (!fresh_) renew(p, h);
+    if (!fresh_) renew(state, h);
     for (std::size_t k = 0; k < n_steps_; ++k) {
       drift(state, k == 0 ? 0.5 * h : h);
-      if (used_ > 0.5 * skin_) renew(p, h);
+      if (used_ > 0.5 * skin_) renew(state, h);
       find_contacts(state, h);
       kick(state, h);
     }
@@ -96,7 +96,7 @@ class SoftSpheres final : public Mover {
       pairs.insert(pairs.end(), {static_cast<double>(k.id_i), static_cast<double>(k.id_j), k.overlap,
                                  k.spring.x, k.spring.y, k.spring.z});
     for (const auto& k : wall_contacts_)
-      walls.insert(walls.end(), {static_cast<double>(k.id), static_cast<double>(number_of(*k.side)),
+      walls.insert(walls.end(), {static_cast<double>(k.id), static_cast<double>(domain_.number_of(*k.side)),
                                  k.overlap, k.spring.x, k.spring.y, k.spring.z});
     file.set("contacts", io::Tensor::copy(pairs, {kept_.size(), 6}));
     file.set("wall_contacts", io::Tensor::copy(walls, {wall_contacts_.size(), 6}));
@@ -123,12 +123,6 @@ class SoftSpheres final : public Mover {
   [[nodiscard]] static std::span<const double> rows_of(const io::TensorFile& file, const char* name) {
     return file.tensor(name, std::array<std::size_t, 2>{io::any_size, 6}).f64();
   }
-  [[nodiscard]] std::size_t number_of(const Side& side) const {
-    for (std::size_t b = 0; b < domain_.bodies().size(); ++b)
-      for (std::size_t k = 0; k < 6; ++k)
-        if (&domain_.bodies()[b].sides[k] == &side) return 6 * b + k;
-    return 0;
-  }
   [[nodiscard]] const Side* side_of(double number) const {
     const auto at = static_cast<std::size_t>(
         std::clamp(number, 0.0, 6.0 * static_cast<double>(domain_.bodies().size()) - 1));
@@ -151,9 +145,11 @@ class SoftSpheres final : public Mover {
     for (std::size_t i = 0; i < p.size(); ++i) set(p.place, i, balls_[i].place());
   }
 
-  void renew(Particles& p, double h) {
+  void renew(State& state, double h) {
+    auto& p = state.particles;
     if (fresh_) collect();
     unpack(p);
+    for (std::size_t i = 0; i < p.size(); ++i) leave_walls(state, i, domain_, get(p.place, i), h);
     if (domain_.images().any())
       for (std::size_t i = 0; i < p.size(); ++i) set(p.place, i, domain_.wrapped(get(p.place, i)));
     pack(p);
@@ -217,9 +213,12 @@ class SoftSpheres final : public Mover {
   void drift_by_wall(State& state, std::size_t i, double h) {
     auto& p = state.particles;
     auto& ball = balls_[i];
-    const auto path = follow(domain_, settings_.walls, ball.place(), get(p.velocity, i), ball.radius, h);
+    auto flight = flight_of(state, i, h);
+    flight.place = ball.place();
+    const auto path = follow(domain_, settings_.walls, flight, h);
     ball = {path.place.x, path.place.y, path.place.z, ball.radius};
     set(p.velocity, i, path.velocity);
+    if (p.remembers_walls) p.touched[i] = path.touched;
     state.count_wall_hits(static_cast<std::size_t>(p.group[i]), path.hits);
   }
   [[nodiscard]] bool reflects() const { return settings_.walls.kind == Walls::reflect; }
@@ -296,6 +295,7 @@ class SoftSpheres final : public Mover {
     std::array<const Side*, 6> sides;
     for (const auto number : neighbours_.near_wall()) {
       const auto i = static_cast<std::size_t>(number);
+      leave_walls(state, i, domain_, balls_[i].place(), h);
       const std::size_t n = domain_.touching(balls_[i].place(), balls_[i].radius, sides);
       for (std::size_t k = 0; k < n; ++k) wall_contact(state, i, *sides[k], h);
     }
@@ -322,7 +322,8 @@ class SoftSpheres final : public Mover {
       moment_[i] += moment;
     }
     force_[i] -= force;
-    if (is_new) state.count_wall_hits(static_cast<std::size_t>(p.group[i]), 1);
+    if (is_new && meets(p, i, domain_.bit(side)))
+      state.count_wall_hits(static_cast<std::size_t>(p.group[i]), 1);
     wall_contacts_.push_back(contact);
   }
 

@@ -54,7 +54,7 @@ class Swept final : public Mover {
   void advance(State& state, double dt) override {
     auto& p = state.particles;
     if (p.size() == 0) return;
-    begin_ = state.time;
+    begin_ = state.time, whole_ = dt;
     gone_.assign(domain_.has_outlets() ? p.size() : 0, 0);
     if (!(greatest_speed_of(p) * dt < HUGE_VAL))
       throw NumericalError(
@@ -117,7 +117,7 @@ class Swept final : public Mover {
     base::parallel_for(
         (p.size() + block_size - 1) / block_size, settings_.n_threads, [&](std::size_t block, int) {
           for (std::size_t i = block * block_size; i < std::min(p.size(), (block + 1) * block_size); ++i)
-            bring(p, i, time), clock_[i] = 0;
+            bring(state, i, time), clock_[i] = 0;
         });
     return time;
   }
@@ -188,11 +188,11 @@ class Swept final : public Mover {
   void happen(State& state, const Event& event) {
     auto& p = state.particles;
     const auto i = static_cast<std::size_t>(event.i);
-    bring(p, i, event.time);
+    bring(state, i, event.time);
     ++stamp_[i];
     if (event.j == no_sphere) return meet_wall(state, i, event);
     const auto j = static_cast<std::size_t>(event.j);
-    bring(p, j, event.time);
+    bring(state, j, event.time);
     ++stamp_[j];
     const Vec apart = domain_.images().nearest(get(p.place, j) - get(p.place, i));
     const Vec normal = (1 / std::sqrt(dot(apart, apart))) * apart;
@@ -211,9 +211,12 @@ class Swept final : public Mover {
       state.leaving.push_back(static_cast<std::int32_t>(i));
       return;
     }
+    const bool is_new = meets(p, i, domain_.bit(*event.side));
     auto law = settings_.walls;
-    if (is_resting(p, i, event.time)) law.normal_restitution = law.tangential_restitution = 1;
+    // A contact that lasts makes no other one resting: a sphere on the floor loses energy to its neighbours.
+    if (!is_new && is_resting(p, i, event.time)) law.normal_restitution = law.tangential_restitution = 1;
     set(p.velocity, i, reflected(get(p.velocity, i), *event.side, law));
+    if (!is_new) return;
     if (p.remembers_hits) p.last_hit[i] = begin_ + event.time;
     state.count_wall_hits(static_cast<std::size_t>(p.group[i]), 1);
   }
@@ -255,9 +258,11 @@ class Swept final : public Mover {
   [[nodiscard]] Vec place_at(const Particles& p, std::size_t i, double now) const {
     return get(p.place, i) + (now - clock_[i]) * get(p.velocity, i);
   }
-  void bring(Particles& p, std::size_t i, double now) {
+  void bring(State& state, std::size_t i, double now) {
+    auto& p = state.particles;
     set(p.place, i, place_at(p, i, now));
     clock_[i] = now;
+    leave_walls(state, i, domain_, get(p.place, i), whole_);
   }
 
   const Domain& domain_;
@@ -267,6 +272,7 @@ class Swept final : public Mover {
   bool fresh_ = false;
   double skin_ = 0, used_ = 0;  // of the list: m, and how much of it has been travelled
   double begin_ = 0;            // of the part, s
+  double whole_ = 0;            // step, s
   std::vector<double> quiet_;   // of each sphere: nothing happens before so much of the list is used, m
   std::vector<double> clock_;   // of each sphere: when it is where its place says, from the part's beginning
   std::vector<std::uint32_t> stamp_;  // events of each sphere so far: older ones are stale

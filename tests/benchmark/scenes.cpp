@@ -9,6 +9,7 @@
 
 #include "elrom/particle/drag.hpp"
 #include "elrom/scene/simulation.hpp"
+#include "scene_beds.hpp"
 #include "support/benchmark.hpp"
 
 namespace {
@@ -110,50 +111,79 @@ Json crossing_streams(bool small) {
 }
 
 // MFiX-Exa's homogeneous cooling, in CGS: 5050 spheres of 0.01 cm in a cube of 64 diameters, temperature
-// 1000 cm2/s2.
-Json haff(double restitution, const std::vector<double>& expected, bool small) {
-  const std::vector<double> times{1, 10, 30, 100};
-  const std::size_t n_times = small ? 2 : 4;
+// 1000 cm2/s2. Time is in d / sqrt(T) of the temperature that was drawn.
+// @return temperatures at these times, over that at the start
+std::vector<double> cooled(const std::string& collisions, double restitution,
+                           const std::vector<double>& times, int seed) {
   const double diameter = 1e-4, speed = std::sqrt(0.1), unit = diameter / speed;  // m, m/s, s
-  Json rows = Json::array();
   scene::Simulation simulation(
       scene::parse_scene(
-          "[scene]\nduration = " + std::to_string(times[n_times - 1] * unit) +
-              "\ntime_step = " + std::to_string(0.25 * unit) +
-              "\n[domain]\nperiodic = [\"x\", \"y\", \"z\"]\n[effects]\ncollisions = \"helscm\"\n"
-              "[collisions]\ncontact_time = 0\nrestitution = " +
-              std::to_string(restitution) +
-              "\n[[domain.boxes]]\nname = \"cube\"\nlow = [0, 0, 0]\nhigh = [0.0064, 0.0064, 0.0064]\n"
-              "[[particles]]\ngroup = \"a\"\ndiameter = 1e-4\nnumber = 5050\nscatter = " +
-              std::to_string(speed),
+          fmt::format("[scene]\nduration = {}\ntime_step = {}\nseed = {}\n"
+                      "[domain]\nperiodic = [\"x\", \"y\", \"z\"]\n[effects]\ncollisions = \"{}\"\n"
+                      "[collisions]\ncontact_time = 0\nrestitution = {}\n"
+                      "[[domain.boxes]]\nname = \"cube\"\nlow = [0, 0, 0]\nhigh = [0.0064, 0.0064, 0.0064]\n"
+                      "[[particles]]\ngroup = \"a\"\ndiameter = 1e-4\nnumber = 5050\nscatter = {}\n",
+                      1.1 * times.back() * unit, 0.25 * unit, seed, collisions, restitution, speed),
           "haff"),
       1);
   const auto temperature = [&] {
     return 2 * kinetic_energy_of(simulation.state().particles) / 3 / mass_of(simulation.state().particles);
   };
-  const double start = temperature();
-  // The drawn temperature differs a little from the one asked for; time is counted in its own units.
-  const double own_unit = diameter / std::sqrt(start);
+  const double start = temperature(), own_unit = diameter / std::sqrt(start);
   double last_time = 0, last = start;
-  for (std::size_t k = 0; k < n_times && !simulation.done();) {
+  std::vector<double> found;
+  while (found.size() < times.size() && !simulation.done()) {
     simulation.step();
     const double time = simulation.state().time, now = temperature();
-    while (k < n_times && time >= times[k] * own_unit) {
-      const double share = (times[k] * own_unit - last_time) / (time - last_time);
-      const double found = (last + share * (now - last)) / start;
-      rows.push_back(
-          {{"t", times[k]}, {"haff", expected[k]}, {"found", found}, {"error", found / expected[k] - 1}});
-      ++k;
+    for (; found.size() < times.size() && time >= times[found.size()] * own_unit;) {
+      const double share = (times[found.size()] * own_unit - last_time) / (time - last_time);
+      found.push_back((last + share * (now - last)) / start);
     }
     last_time = time, last = now;
   }
-  return rows;
+  return found;
 }
 
-Json measure(const benchmark::Arguments& arguments) {
-  Json json;
-  const Json table =
-      crossing_streams(arguments.small);  // of its own: a reference would not outlive the next key
+// Means over draws of the spheres, and their deviation.
+Json haff(const std::string& collisions, double restitution, const std::vector<double>& times, int draws) {
+  const auto expected = restitution == 0.8 ? std::vector{0.983438, 0.851252, 0.638403, 0.295837}
+                                           : std::vector{0.991210, 0.917064, 0.779390, 0.480650};
+  std::vector<double> sum(times.size()), squares(times.size());
+  const double begin = processor_seconds();
+  for (int seed = 1; seed <= draws; ++seed) {
+    const auto found = cooled(collisions, restitution, times, seed);
+    for (std::size_t k = 0; k < times.size(); ++k) sum[k] += found.at(k), squares[k] += found[k] * found[k];
+  }
+  Json rows = Json::array();
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double mean = sum[k] / draws, law = expected[k];
+    const double variance = draws > 1 ? (squares[k] - draws * mean * mean) / (draws - 1) : 0;
+    rows.push_back({{"t", times[k]},
+                    {"haff", law},
+                    {"found", mean},
+                    {"error", mean / law - 1},
+                    {"deviation_of_a_draw", std::sqrt(std::max(0.0, variance)) / law}});
+  }
+  return {{"collisions", collisions},
+          {"restitution", restitution},
+          {"draws", draws},
+          {"seconds", processor_seconds() - begin},
+          {"rows", rows}};
+}
+
+Json all_haff(bool small) {
+  Json table = Json::array();
+  const std::vector<double> times = small ? std::vector<double>{1, 10} : std::vector<double>{1, 10, 30, 100};
+  for (const double restitution : {0.8, 0.9}) {
+    table.push_back(haff("helscm", restitution, times, small ? 1 : 16));
+    // dem takes half a minute to t = 30.
+    if (!small) table.push_back(haff("dem", restitution, {1, 10, 30}, 1));
+  }
+  return table;
+}
+
+void measure_streams(bool small, Json& json) {
+  const Json table = crossing_streams(small);  // of its own: a reference would not outlive the next key
   json["crossing_streams"] = table;
   const double seconds_dem = table[0]["seconds"];
   json["dem_seconds_over_swept_seconds"] = seconds_dem / table[2]["seconds"].get<double>();
@@ -163,18 +193,46 @@ Json measure(const benchmark::Arguments& arguments) {
     most = std::max(most, table[k]["collisions"].get<double>());
   }
   json["helscm_spread_of_counts"] = most / least - 1;
-  json["helscm_counts_of_twins"] = counts_by_step(arguments.small ? 800 : 12000, 4);
-  json["haff_e_0.8"] = haff(0.8, {0.983438, 0.851252, 0.638403, 0.295837}, arguments.small);
-  json["haff_e_0.9"] = haff(0.9, {0.991210, 0.917064, 0.779390, 0.480650}, arguments.small);
-  const double n = arguments.small ? 800 : 12000;
+  json["helscm_counts_of_twins"] = counts_by_step(small ? 800 : 12000, 4);
+  const double n = small ? 800 : 12000;
   json["swept_sphere_steps_per_second"] = n * 12000 / table[4]["seconds"].get<double>();
-  return json;
+}
+
+void measure(const std::string& part, const benchmark::Arguments& arguments,
+             const std::vector<std::string>& changes, Json& json) {
+  if (part == "streams")
+    measure_streams(arguments.small, json);
+  else if (part == "haff")
+    json["haff"] = all_haff(arguments.small);
+  else if (part == "beds")
+    json["beds"] = benchmark::straight_beds(arguments.small, "hel", changes);
+  else if (part == "beds_dem")
+    json["beds_dem"] = benchmark::straight_beds(arguments.small, "dem", changes);
+  else if (part == "cfb")
+    json["cfb"] = benchmark::small_cfb(arguments.small, changes);
+  else
+    throw UsageError(Problem{.what = "unknown part", .found = "'" + part + "'"});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return elrom::benchmark::benchmark_main("bench-scenes",
-                                          "Spheres in scenes: counts, energy, seconds by model and step.",
-                                          "not used", argc, argv, measure);
+  using namespace elrom;
+  return base::run_app("bench-scenes", [&] {
+    benchmark::CommandLine line("Spheres in scenes: counts, energy, pressure, seconds by model and step.");
+    benchmark::Arguments arguments;
+    arguments.add_to(line, "not used");
+    std::vector<std::string> parts{"streams", "haff"}, changes;
+    line.add_list("--parts", parts, "streams, haff, beds, beds_dem, cfb");
+    line.add_repeated("--set", changes, "key=value: a setting of the scenes of files; repeatable");
+    if (const auto status = line.parse(argc, argv)) return *status;
+    Json json;
+    for (const auto& part : parts) measure(part, arguments, changes, json);
+    json["program"] = program_version();
+    json["small"] = arguments.small;
+    const auto text = json.dump(1) + "\n";
+    std::fputs(text.c_str(), stdout);
+    if (!arguments.json.empty()) base::write_text(arguments.json, text);
+    return 0;
+  });
 }

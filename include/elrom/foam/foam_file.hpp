@@ -67,4 +67,8 @@ class FoamFile {
   std::size_t at_ = 0, body_ = 0;
 };
 
+/// internalField of a volume field, (n_cells, n_components). @param n_components 1 or 3 @throws InputError
+[[nodiscard]] MatrixD read_internal_field(const std::filesystem::path& path, std::size_t n_cells,
+                                          int n_components);
+
 }  // namespace elrom::foam

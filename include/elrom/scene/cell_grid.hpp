@@ -23,6 +23,15 @@ struct Shares {
   std::array<double, 8> weight;
 };
 
+/// Of a quantity by faces along each axis, what there is at a place. @param faces those around it
+[[nodiscard]] inline Vec read(const Vectors& values, const std::array<Shares, 3>& faces) {
+  std::array<double, 3> sum{};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t k = 0; k < 8; ++k)
+      sum[a] += faces[a].weight[k] * values[a][static_cast<std::size_t>(faces[a].of[k])];
+  return {sum[0], sum[1], sum[2]};
+}
+
 class CellGrid {
  public:
   static constexpr std::int32_t none = -1;

@@ -70,7 +70,8 @@ class Domain {
 
   [[nodiscard]] const std::vector<Body>& bodies() const { return bodies_; }
   [[nodiscard]] bool unbounded() const { return bodies_.empty(); }
-  [[nodiscard]] bool has_outlets() const;
+  [[nodiscard]] bool has_outlets() const { return has(SideKind::outlet); }
+  [[nodiscard]] bool has_walls() const { return has(SideKind::wall); }
   [[nodiscard]] const Images& images() const { return images_; }
   /// The image inside the period.
   [[nodiscard]] Vec wrapped(Vec place) const;
@@ -92,6 +93,13 @@ class Domain {
   [[nodiscard]] const Side& named_side(const std::string& name) const;
   [[nodiscard]] double area_of(const Side& side) const;  ///< m2; of a side of this domain's
 
+  /// Sides in the order of the bodies, six a body. @param side of this domain's
+  [[nodiscard]] std::size_t number_of(const Side& side) const;
+  /// A side's bit in a set of sides; sides whose numbers differ by 48, eight bodies on, share one.
+  [[nodiscard]] std::uint64_t bit(const Side& side) const { return one << number_of(side) % n_bits; }
+  /// Those of a set of sides that are nearer to a place than this, m.
+  [[nodiscard]] std::uint64_t nearer(std::uint64_t sides, const Vec& place, double than) const;
+
   /// Where a centre on a straight path first comes within `radius` of a wall or passes an outlet.
   struct Exit {
     double time = std::numeric_limits<double>::infinity();
@@ -102,6 +110,9 @@ class Domain {
   std::size_t touching(const Vec& place, double radius, std::array<const Side*, 6>& walls) const;
 
  private:
+  static constexpr std::uint64_t one = 1;
+  [[nodiscard]] bool has(SideKind kind) const;
+  static constexpr std::size_t n_bits = 48;  // a double, as checkpoints hold it, has 53
   [[nodiscard]] std::size_t deepest(const Vec& place, double radius) const;
 
   std::vector<Body> bodies_;

@@ -61,7 +61,8 @@ class GasFlow {
   /// Mean over the last advance().
   [[nodiscard]] const FaceValues& mean_velocity() const { return mean_; }
   [[nodiscard]] const std::vector<double>& pressure() const { return pressure_; }  ///< Pa, by cell
-  /// grad p, Pa/m, by face; 0 on closed ones.
+  /// grad p, Pa/m, by face; 0 on closed ones. On an inlet, where the gas's velocity is given, it is what holds
+  /// the drag there.
   [[nodiscard]] FaceValues pressure_gradient() const;
 
   /// Gas that came in and went out in the last advance(), m3/s. With the solids' own displacement they
@@ -70,7 +71,7 @@ class GasFlow {
   [[nodiscard]] double flow_out() const { return flow_out_; }
   /// Largest |div(eps u + S)| over the largest flux through a face per cell size.
   [[nodiscard]] double divergence() const { return divergence_; }
-  /// Mean pressure on the inlets, Pa, from the two cells before each of their faces; 0 without.
+  /// Mean pressure on the inlets, Pa; 0 without.
   [[nodiscard]] double inlet_pressure() const;
   [[nodiscard]] int steps() const { return n_steps_; }  ///< in the last advance()
 
@@ -94,6 +95,7 @@ class GasFlow {
   [[nodiscard]] double gap(const Face& face, const GasLoad& load) const;
   [[nodiscard]] double drop(const Face& face, const std::vector<double>& p) const;  // gradient
   void look(const GasLoad& load);
+  void find_entry(const GasLoad& load);
 
   std::shared_ptr<CellGrid> grid_;
   particle::Gas gas_;
@@ -102,6 +104,7 @@ class GasFlow {
   std::unique_ptr<Equation> equation_;
   FaceValues velocity_, mean_, before_, hold_;  // hold_: rho eps / dt + K
   std::vector<double> pressure_, correction_;
+  std::vector<double> entry_;  // grad p on the inlets' faces, in their order
   double flow_in_ = 0, flow_out_ = 0, divergence_ = 0;
   int n_steps_ = 0;
 };

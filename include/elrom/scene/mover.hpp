@@ -49,9 +49,9 @@ struct WallLaw {
 /// What happened since the scene began.
 struct Tally {
   std::int64_t collisions = 0;  ///< of spheres with each other
-  std::int64_t wall_hits = 0;
-  std::int64_t left = 0;      ///< spheres that passed an outlet
-  std::int64_t returned = 0;  ///< of them, through recirculation
+  std::int64_t wall_hits = 0;   ///< contacts with walls, by their beginnings
+  std::int64_t left = 0;        ///< spheres that passed an outlet
+  std::int64_t returned = 0;    ///< of them, through recirculation
   std::int64_t added = 0;
   std::int64_t skipped = 0;             ///< collisions not computed, where spheres are jammed (helscm)
   std::vector<std::int64_t> by_groups;  ///< collisions of group a with b >= a: a n_groups + b
@@ -66,7 +66,7 @@ struct State {
   std::int64_t step = 0;
   std::int64_t next_id = 0;
   std::int32_t n_groups = 1;
-  Vectors push;  ///< acceleration by all forces in this step, m/s2, for movers that take it; else empty
+  Vectors push;                       ///< acceleration by all forces in this step, m/s2; empty without forces
   std::vector<std::int32_t> leaving;  ///< that passed an outlet in this step, ascending
   std::vector<Sphere> waiting;        ///< left, and not back yet
   Tally tally;

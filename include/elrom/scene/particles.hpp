@@ -56,8 +56,10 @@ struct Particles {
   std::vector<double> last_hit;  ///< s, when a sphere last collided; empty unless a collision model asks
   /// Spheres that each parcel stands for, all of its diameter; empty where all are spheres.
   std::vector<double> weight;
-  std::vector<double> born;  ///< s, when each came; empty where none can leave
+  std::vector<double> born;            ///< s, when each came; empty where none can leave
+  std::vector<std::uint64_t> touched;  ///< walls that each touches, Domain::bit(); empty without walls
   bool rotates = false, remembers_hits = false, are_parcels = false, remembers_birth = false;
+  bool remembers_walls = false;
 
   [[nodiscard]] std::size_t size() const { return id.size(); }
   /// At which two of them collide, m: a parcel of w spheres at d sqrt(w), so that between its collisions it

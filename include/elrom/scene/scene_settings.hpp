@@ -98,6 +98,7 @@ struct SceneSettings {
 
   std::filesystem::path folder;  ///< that files are named from: the scene's own
 
+  [[nodiscard]] Domain domain() const;  ///< @throws UsageError
   [[nodiscard]] std::int64_t n_steps() const;
   [[nodiscard]] bool has_parcels() const;
   /// Whether an effect needs the grid.
