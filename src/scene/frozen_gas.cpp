@@ -1,4 +1,5 @@
-// Fields of gas that others computed: each is read as it is stored, and interpolated as its own kind wants it.
+// Fields of gas that others computed: each is read as it is stored, and interpolated as its own kind wants
+// it.
 #include "frozen_gas.hpp"
 
 #include "elrom/base/error.hpp"

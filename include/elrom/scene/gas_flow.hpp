@@ -61,8 +61,8 @@ class GasFlow {
   /// Mean over the last advance().
   [[nodiscard]] const FaceValues& mean_velocity() const { return mean_; }
   [[nodiscard]] const std::vector<double>& pressure() const { return pressure_; }  ///< Pa, by cell
-  /// grad p, Pa/m, by face; 0 on closed ones. On an inlet, where the gas's velocity is given, it is what holds
-  /// the drag there.
+  /// grad p, Pa/m, by face; 0 on closed ones. On an inlet, where the gas's velocity is given, it is what
+  /// holds the drag there.
   [[nodiscard]] FaceValues pressure_gradient() const;
 
   /// Gas that came in and went out in the last advance(), m3/s. With the solids' own displacement they
