@@ -82,6 +82,13 @@ std::filesystem::path temporary_beside(const std::filesystem::path& target) {
 AtomicFile::AtomicFile(std::filesystem::path target, Sync sync) : target_(std::move(target)), sync_(sync) {
   const auto folder = folder_of(target_);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) throw system_error("cannot write into folder", folder);
+  // The rename would put a file in its place: to root's programs, /dev/null would be lost for everybody.
+  std::error_code unknown;
+  if (std::filesystem::is_other(std::filesystem::status(target_, unknown)))
+    throw SystemError({.what = "cannot write file",
+                       .where = target_.string(),
+                       .found = "a device, a pipe or a socket of that name",
+                       .advice = "name a file"});
   temporary_ = temporary_beside(target_);
 }
 

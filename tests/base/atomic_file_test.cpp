@@ -1,6 +1,7 @@
 #include "elrom/base/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -58,6 +59,14 @@ TEST_F(AtomicFileTest, TwoWritersOfOneTargetDoNotShareATemporary) {
 
 TEST_F(AtomicFileTest, MissingFolderIsToldAtOnce) {
   EXPECT_THROW(AtomicFile(folder_ / "missing" / "a.txt"), SystemError);
+}
+
+TEST_F(AtomicFileTest, WhatIsNoFileIsNotReplaced) {
+  const auto pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+
+  EXPECT_THROW(write_text(pipe, "text"), SystemError);
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST_F(AtomicFileTest, WhatCannotBeWrittenIsKnownBeforeTheWork) {

@@ -16,7 +16,7 @@ enum class Sync { none, content, all };
 /// its own (temporary_beside), so two writers never share one.
 class AtomicFile {
  public:
-  /// @throws SystemError when the folder does not exist or is not writable
+  /// @throws SystemError when the folder does not exist or is not writable, or the target is no file
   explicit AtomicFile(std::filesystem::path target, Sync sync = Sync::all);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
