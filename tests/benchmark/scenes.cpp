@@ -228,11 +228,6 @@ int main(int argc, char** argv) {
     if (const auto status = line.parse(argc, argv)) return *status;
     Json json;
     for (const auto& part : parts) measure(part, arguments, changes, json);
-    json["program"] = program_version();
-    json["small"] = arguments.small;
-    const auto text = json.dump(1) + "\n";
-    std::fputs(text.c_str(), stdout);
-    if (!arguments.json.empty()) base::write_text(arguments.json, text);
-    return 0;
+    return benchmark::show(std::move(json), arguments);
   });
 }

@@ -65,6 +65,15 @@ nlohmann::ordered_json trained_report(const StudyArguments& arguments, const std
   return nlohmann::ordered_json::parse(base::read_text(file));
 }
 
+int show(nlohmann::ordered_json json, const Arguments& arguments) {
+  json["program"] = program_version();
+  json["small"] = arguments.small;
+  const auto text = json.dump(1) + "\n";
+  std::fputs(text.c_str(), stdout);
+  if (!arguments.json.empty()) base::write_text(arguments.json, text);
+  return 0;
+}
+
 int benchmark_main(const std::string& name, const std::string& what, const std::string& store_help, int argc,
                    char** argv, const std::function<nlohmann::ordered_json(const Arguments&)>& measure) {
   return base::run_app(name, [&] {
@@ -72,13 +81,7 @@ int benchmark_main(const std::string& name, const std::string& what, const std::
     Arguments arguments;
     arguments.add_to(line, store_help);
     if (const auto status = line.parse(argc, argv)) return *status;
-    auto json = measure(arguments);
-    json["program"] = program_version();
-    json["small"] = arguments.small;
-    const auto text = json.dump(1) + "\n";
-    std::fputs(text.c_str(), stdout);
-    if (!arguments.json.empty()) base::write_text(arguments.json, text);
-    return 0;
+    return show(measure(arguments), arguments);
   });
 }
 
