@@ -12,6 +12,8 @@
 #include <cstdlib>
 #include <thread>
 
+#include "elrom/base/atomic_file.hpp"
+#include "elrom/base/error.hpp"
 #include "study/study_fixture.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -127,8 +129,10 @@ class HitJob : public World {
     EXPECT_NE(victim, 0) << errors();
     if (victim != 0) ::kill(victim, signal);
     job.join();
+    // A launcher may end before what it launched, and a rank that ends keeps its files when its
+    // environment is gone: the study is free when its lock is.
     const auto works = [&](int one) { return process_of_rank(one, (folder / "hit").string()) != 0; };
-    while (works(0) || works(1))  // a launcher may end before what it launched
+    while (works(0) || works(1) || is_locked(folder / "hit" / ".lock"))
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return status;
   }
@@ -140,6 +144,12 @@ class HitJob : public World {
   }
 
  private:
+  static bool is_locked(const fs::path& lock) try {
+    [[maybe_unused]] const base::FileLock held(lock);
+    return false;
+  } catch (const UsageError&) {
+    return true;
+  }
   [[nodiscard]] bool some_built() const {
     const auto stages = folder / "hit" / "stages";
     if (!fs::exists(stages)) return false;
