@@ -1,5 +1,6 @@
 #include "elrom/field/possible_inputs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -11,36 +12,38 @@
 namespace elrom::field {
 namespace {
 
-constexpr double beyond_everything = 1e12;  // SI, of a unit without a row below
+constexpr double beyond_everything = 1e12;  // SI, of what has no row of its own
 
 struct Possible {
   std::string_view unit;  ///< SI
+  std::string_view word;  ///< ends the input's name
   double low, high;
   bool above_low;  ///< the low end itself is impossible
 };
 
-constexpr std::array<Possible, 7> known_units{{{"kg/s", 0, 1e6, false},
-                                               {"kg", 0, 1e9, false},
-                                               {"m", 0, 1e4, true},
-                                               {"m3", 0, 1e9, false},
-                                               {"kg/m3", 0, 1e5, true},
-                                               {"K", 0, 1e4, true},
-                                               {"s", 0, 1e9, false}}};
-constexpr Possible a_fraction{"1", 0, 1, false};
-constexpr Possible anything{"", -beyond_everything, beyond_everything, false};
+constexpr std::array<Possible, 11> known{{{"1", "fraction", 0, 1, false},
+                                          {"1", "spread", 0, 1e3, false},
+                                          {"1", "ratio", 0, 1e6, false},
+                                          {"kg/s", "", 0, 1e6, false},
+                                          {"kg", "", 0, 1e9, false},
+                                          {"m", "", 0, 1e4, true},
+                                          {"m3", "", 0, 1e9, false},
+                                          {"kg/m3", "", 0, 1e5, true},
+                                          {"K", "", 0, 1e4, true},
+                                          {"s", "", 0, 1e9, false},
+                                          {"", "", -beyond_everything, beyond_everything, false}}};
 
-Possible possible_for(const field::InputInfo& info) {
-  if (info.unit == "1" && info.name.ends_with("fraction")) return a_fraction;
-  for (const auto& row : known_units)
-    if (row.unit == info.unit) return row;
-  return anything;
+const Possible& possible_for(const InputInfo& info) {
+  return *std::ranges::find_if(known, [&](const Possible& row) {
+    return (row.unit == info.unit || row.unit.empty()) && info.name.ends_with(row.word);
+  });
 }
 
 }  // namespace
 
-void check_possible(const field::CaseInputs& inputs, const field::InputSchema& schema) {
+void check_possible(const CaseInputs& inputs, const InputSchema& schema) {
   for (std::size_t i = 0; i < schema.size(); ++i) {
-    const auto possible = possible_for(schema[i]);
+    const auto& possible = possible_for(schema[i]);
     const double value = inputs.values[i];
     const bool low_enough = possible.above_low ? value > possible.low : value >= possible.low;
     if (low_enough && value <= possible.high) continue;

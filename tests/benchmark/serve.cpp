@@ -418,10 +418,8 @@ std::vector<Json> mistaken(const Json& inputs) {
       if (!other.empty()) one[other] = wrong;
       all.push_back(std::move(one));
     };
-    // Of a number without a unit physics knows nothing, unless it is a fraction: the guard marks it.
-    const bool bounded = !name.ends_with("[1]") || name.ends_with("fraction [1]");
-    if (bounded) add(name, -1e3);
-    for (const Json& wrong : {Json(1e30), Json("much"), Json(nullptr), Json::array({value}), Json(true)})
+    for (const Json& wrong :
+         {Json(-1e3), Json(1e30), Json("much"), Json(nullptr), Json::array({value}), Json(true)})
       add(name, wrong);
     const auto bare = name.substr(0, name.find(" ["));
     add("", {});

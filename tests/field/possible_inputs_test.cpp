@@ -17,13 +17,15 @@ const InputSchema& possible_schema() {
                                    {"gas_temperature", "K", "K"},
                                    {"return_left_fraction", "1", "1"},
                                    {"gas_density", "kg/m3", "kg/m3"},
-                                   {"valve", "1", "1"}}};
+                                   {"valve", "1", "1"},
+                                   {"solids_spread", "1", "1"},
+                                   {"air_ratio", "1", "1"}}};
   return schema;
 }
 
 // What is said of a case; nothing of one that can be.
 std::string refusal_of(std::size_t changed, double value) {
-  CaseInputs inputs{.name = "c", .load = 1, .values = {100, 1150, 0.5, 0.3, -7}};
+  CaseInputs inputs{.name = "c", .load = 1, .values = {100, 1150, 0.5, 0.3, -7, 1.5, 1.2}};
   inputs.values[changed] = value;
   try {
     check_possible(inputs, possible_schema());
@@ -40,6 +42,8 @@ TEST(PossibleInputs, EveryInputIsLookedAt) {
   EXPECT_THAT(refusal_of(2, -1), HasSubstr("impossible return_left_fraction"));
   EXPECT_THAT(refusal_of(3, -1), HasSubstr("impossible gas_density"));
   EXPECT_THAT(refusal_of(4, 1e13), HasSubstr("impossible valve"));
+  EXPECT_THAT(refusal_of(5, -0.1), HasSubstr("impossible solids_spread"));
+  EXPECT_THAT(refusal_of(6, -1), HasSubstr("impossible air_ratio"));
 }
 
 TEST(PossibleInputs, EndsOfRangesArePossibleWhereNatureAllowsThem) {
