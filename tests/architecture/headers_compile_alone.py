@@ -3,8 +3,9 @@
     headers_compile_alone.py COMPILER INCLUDE_DIR WORK_DIR [FLAG ...]
 
 Parsing Eigen and the standard library is most of the cost. A header that includes all of a few of these itself, or through
-other headers of ours, gets them precompiled: it would parse the same. Nothing else stands before it. What passed is kept in
-WORK_DIR by the digest of all that it reads of ours, and is not compiled again."""
+other headers of ours, gets them precompiled: it would parse the same. For the same reason a header may follow headers of ours
+that it includes: the compiler is started once for a row of them. Nothing else stands before it. What passed is kept in WORK_DIR
+by the digest of all that it reads of ours, and is not compiled again."""
 import concurrent.futures
 import hashlib
 import os
@@ -31,10 +32,22 @@ def closure(header, root, seen):
     return others
 
 
-def compile_alone(compiler, flags, header, digest, kept, precompiled):
+def rows_of(reads, precompiled):
+    """Headers in rows: each includes all that stand before it, and what is precompiled for them."""
+    rows = []
+    for header in sorted(reads, key=lambda header: len(reads[header]), reverse=True):
+        fitting = [row for row in rows if header in reads[row[0]] and precompiled[row[0]] == precompiled[header]]
+        if fitting:
+            min(fitting, key=lambda row: len(reads[row[0]])).insert(0, header)
+        else:
+            rows.append([header])
+    return rows
+
+
+def compile_row(compiler, flags, row, digest, kept, precompiled):
     if kept.exists() and kept.read_text() == digest:
         return None
-    text = f'#include "{header}"\n#include "{header}"\n'
+    text = "".join(f'#include "{header}"\n' for header in [*row, *row])
     before = ["-include", str(precompiled)] if precompiled else []
     done = subprocess.run([compiler, *flags, *before, "-x", "c++", "-fsyntax-only", "-"], input=text, text=True,
                           capture_output=True)
@@ -56,22 +69,25 @@ def main():
     flags = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", f"-I{root}"]
     flags += [flag for flag in sys.argv[4:] if flag not in ("", "-isystem/usr/include")]  # that one breaks #include_next
     work.mkdir(parents=True, exist_ok=True)
-    precompiled = {names: precompile(compiler, flags, names, work) for names in PRECOMPILED}
+    headers = {names: precompile(compiler, flags, names, work) for names in PRECOMPILED}
+    reads, precompiled = {}, {}
+    for path in sorted(root.rglob("*.hpp")):
+        header = str(path.relative_to(root))
+        reads[header] = set()
+        others = closure(header, root, reads[header])
+        precompiled[header] = next((headers[names] for names in PRECOMPILED if others.issuperset(names)), None)
     jobs = []
     with concurrent.futures.ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2)) as pool:
-        for path in sorted(root.rglob("*.hpp")):
-            header, seen = str(path.relative_to(root)), set()
-            others = closure(header, root, seen)
-            before = next((precompiled[names] for names in PRECOMPILED if others.issuperset(names)), None)
-            content = "".join((root / name).read_text() for name in sorted(seen)) + " ".join([compiler, *flags])
+        for row in rows_of(reads, precompiled):
+            content = "".join((root / name).read_text() for name in sorted(reads[row[-1]])) + " ".join([compiler, *flags, *row])
             digest = hashlib.sha256(content.encode()).hexdigest()
-            jobs.append((header, pool.submit(compile_alone, compiler, flags, header, digest,
-                                             work / header.replace("/", "_"), before)))
-    failed = [(header, job.result()) for header, job in jobs if job.result() is not None]
-    for header, errors in failed:
-        print(f"{header} does not compile alone:\n{errors}")
-    print(f"{len(jobs) - len(failed)} of {len(jobs)} headers compile alone")
-    return 1 if failed or not jobs else 0
+            jobs.append((row, pool.submit(compile_row, compiler, flags, row, digest, work / row[-1].replace("/", "_"),
+                                          precompiled[row[0]])))
+    failed = [(row, job.result()) for row, job in jobs if job.result() is not None]
+    for row, errors in failed:
+        print(f"one of these does not compile alone: {' '.join(row)}\n{errors}")
+    print(f"{len(reads) - sum(len(row) for row, _ in failed)} of {len(reads)} headers compile alone")
+    return 1 if failed or not reads else 0
 
 
 sys.exit(main())
