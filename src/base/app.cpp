@@ -22,14 +22,15 @@ int report(std::string_view program, std::string_view message, ExitStatus status
   return static_cast<int>(status);
 }
 
-volatile std::sig_atomic_t interrupted = 0;
+// Set by a signal, read by another thread.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
 
 extern "C" void on_interrupt(int signal) {
-  if (interrupted != 0) {
+  if (interrupted.exchange(true)) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
-  interrupted = 1;
 }
 
 }  // namespace
@@ -63,7 +64,7 @@ std::stop_token interrupt_token() {
     std::signal(SIGTERM, on_interrupt);
     return std::jthread([](const std::stop_token& end) {
       while (!end.stop_requested()) {
-        if (interrupted != 0) {
+        if (interrupted) {
           source.request_stop();
           return;
         }

@@ -101,7 +101,7 @@ class Killer {
             ++n_kills;
           }
         }) {}
-  int n_kills = 0;
+  std::atomic<int> n_kills = 0;
 
  private:
   std::jthread thread_;
@@ -120,7 +120,7 @@ class Filler {
             std::this_thread::sleep_for(std::chrono::milliseconds(200));
           }
         }) {}
-  int n_times = 0;
+  std::atomic<int> n_times = 0;
 
  private:
   std::jthread thread_;

@@ -40,6 +40,23 @@ TEST(KineticTheory, SyamlalsViscosityOfAHandValue) {
   EXPECT_NEAR(granular_viscosity(law, medium, 1), expected, 1e-12 * expected);
 }
 
+// So many collisions a second and volume, 2 n^2 d^2 sqrt(pi T) g0, and m (1 - e^2) T lost in each.
+TEST(KineticTheory, DissipationIsWhatCollisionsLose) {
+  const GranularLaw law;
+  const double pi = std::numbers::pi, d = medium.diameter, t = 0.2, volume = pi * d * d * d / 6;
+  const double n = medium.fraction / volume, mass = medium.density * volume;
+  const double collisions = 2 * n * n * d * d * std::sqrt(pi * t) * radial_distribution(law, medium.fraction);
+  const double expected = collisions * mass * (1 - law.restitution * law.restitution) * t;
+  EXPECT_NEAR(dissipation(law, medium, t), expected, 1e-12 * expected);
+}
+
+TEST(KineticTheory, BulkViscosityOfAHandValue) {
+  const GranularLaw law;
+  const double expected = 4.0 / 3 * 0.09 * 1000 * 315e-6 * radial_distribution(law, 0.3) *
+                          (1 + law.restitution) * std::sqrt(0.2 / std::numbers::pi);
+  EXPECT_NEAR(bulk_viscosity(law, medium, 0.2), expected, 1e-12 * expected);
+}
+
 TEST(KineticTheory, FrictionBeginsWhereItIsToldAndStaysFinite) {
   const GranularLaw law;
   EXPECT_EQ(frictional_pressure(law, 0.6), 0);
