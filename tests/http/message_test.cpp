@@ -19,6 +19,13 @@ TEST(Target, IsTakenApartAndDecoded) {
   EXPECT_EQ(target->value("other"), std::nullopt);
 }
 
+TEST(Target, ACodeMayEndItAndHasDigitsOfEitherCase) {
+  EXPECT_THAT(parse_target("/a%2b")->segments, ElementsAre("a+"));
+  EXPECT_THAT(parse_target("/a%2B")->segments, ElementsAre("a+"));
+  EXPECT_THAT(parse_target("/%C3%9f")->segments, ElementsAre("\xC3\x9F"));
+  EXPECT_FALSE(parse_target("/%fA%00x"));
+}
+
 TEST(Target, TheRootHasNoSegments) {
   EXPECT_THAT(parse_target("/")->segments, IsEmpty());
   EXPECT_THAT(parse_target("/?a=1")->segments, IsEmpty());
@@ -43,11 +50,12 @@ TEST(Tags, AreFoundAmongThoseThatTheCallerHas) {
 }
 
 TEST(Headers, AreFoundWhateverTheirCapitals) {
-  const Headers headers{{"Content-Type", "text/plain"}, {"ETag", "1"}, {"etag", "2"}};
+  const Headers headers{{"Content-Type", "text/plain"}, {"ETag", "1"}, {"etag", "2"}, {"aZ", "3"}};
 
   ASSERT_NE(find_header(headers, "content-type"), nullptr);
   EXPECT_EQ(*find_header(headers, "CONTENT-TYPE"), "text/plain");
   EXPECT_EQ(*find_header(headers, "etag"), "1");
+  EXPECT_EQ(*find_header(headers, "Az"), "3");
   EXPECT_EQ(find_header(headers, "content"), nullptr);
 }
 

@@ -33,5 +33,14 @@ TEST(RateLimiter, ForgetsAddressesThatRested) {
   EXPECT_EQ(limiter.size(), 1U);
 }
 
+TEST(RateLimiter, LooksForThoseThatRestedOnlyNowAndThen) {
+  RateLimiter limiter(1, 1);
+
+  (void)limiter.take("early", 0);
+  (void)limiter.take("late", 100);
+
+  EXPECT_EQ(limiter.size(), 2U);
+}
+
 }  // namespace
 }  // namespace elrom::http

@@ -239,6 +239,13 @@ TEST(Server, MoreConnectionsThanAllowedAreClosed) {
   EXPECT_THAT(second.read_all(0.3), HasSubstr("/|"));
 }
 
+TEST(Server, AClosedConnectionMakesRoomForAnother) {
+  Running running({.connections_of_one = 2});
+  for (int i = 0; i < 6; ++i)
+    EXPECT_THAT(running.exchange("GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n"), HasSubstr("/|"))
+        << i;
+}
+
 TEST(Server, BodiesTogetherHaveALimit) {
   Running running({.all_bodies_bytes = 1500});
   RawConnection first(running.server.port());
@@ -390,6 +397,26 @@ TEST(Server, ACertificateThatCannotBeReadIsNamed) {
 TEST(Client, ABadAddressIsRefused) {
   EXPECT_ERROR(UsageError, "no address of a server: found 'ftp://x'", Client("ftp://x"));
   EXPECT_ERROR(UsageError, "no address of a server", Client("http://:80"));
+}
+
+TEST(Client, AnAddressInBracketsMayHaveAPort) {
+  Running running;
+  const auto port = std::to_string(running.server.port());
+  // Nobody listens there: what matters is which port is tried.
+  EXPECT_ERROR(SystemError, "::1:" + port,
+               Client("http://[::1]:" + port).send({.method = "GET", .target = "/"}));
+}
+
+TEST(Client, GoesOnAfterItsServerWasStartedAgain) {
+  auto running = std::make_unique<Running>();
+  const auto port = running->server.port();
+  Client client(running->url());
+  EXPECT_EQ(client.send({.method = "GET", .target = "/"}).status, 200);
+  running.reset();
+  Echo echo;
+  const Server again({.port = port}, echo);
+
+  EXPECT_EQ(client.send({.method = "GET", .target = "/"}).status, 200);
 }
 
 TEST(Client, AnAnswerThatTakesTooLongIsGivenUp) {
