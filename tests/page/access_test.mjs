@@ -40,7 +40,7 @@ test("everything can be reached by keyboard, and keys move a slider", () => with
   await page.focus("#input-primary_air");
   const before = await picture(page, ".figure.x .one:not(.reference) canvas");
   const value = await text(page, ".total");
-  await page.keyboard.press("ArrowRight");
+  await afterDrawing(page, () => page.keyboard.press("ArrowRight"));
   assert.notEqual(await text(page, ".total"), value);
   await afterDrawing(page, () => page.keyboard.press("PageUp"));
   assert.notEqual(await picture(page, ".figure.x .one:not(.reference) canvas"), before);

@@ -103,4 +103,5 @@ export async function afterDrawing(page, change) {
 }
 export const text = (page, selector) => page.$eval(selector, (element) => element.innerText);
 /// Differs with any pixel.
-export const picture = (page, selector) => page.$eval(selector, (canvas) => canvas.toDataURL());
+export const picture = async (page, selector) =>
+  createHash("sha256").update(await page.$eval(selector, (canvas) => canvas.toDataURL())).digest("hex");
