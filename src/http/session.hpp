@@ -234,13 +234,7 @@ class Session final : public Connection {
 
   void write(Response response, bool may_go_on) {
     const bool keep = may_go_on && parser_->keep_alive() && !shared_.stopping;
-    if (head_only_) return write_as<beast::http::empty_body>(std::move(response), keep);
-    write_as<beast::http::string_body>(std::move(response), keep);
-  }
-
-  template <class Body>
-  void write_as(Response response, bool keep) {
-    auto message = std::make_shared<beast::http::response<Body>>();
+    auto message = std::make_shared<beast::http::response<beast::http::string_body>>();
     message->result(static_cast<unsigned>(response.status));
     message->reason(std::string(reason_of(response.status)));
     message->version(11);
@@ -248,7 +242,7 @@ class Session final : public Connection {
     for (const auto& [name, value] : response.headers) message->insert(name, one_line(value));
     const std::size_t n = response.body.size();
     if (response.status != 204 && response.status != 304) message->content_length(n);
-    if constexpr (std::is_same_v<Body, beast::http::string_body>) message->body() = std::move(response.body);
+    if (!head_only_) message->body() = std::move(response.body);
     tcp().expires_after(milliseconds(limits().answer_seconds));
     beast::http::async_write(stream_, *message,
                              [self = self(), message, keep, n](beast::error_code fault, std::size_t) {

@@ -22,6 +22,17 @@ hid_t writable(hid_t result, std::string_view what, const std::string& where);
 
 template <class T>
 [[nodiscard]] hid_t native_type();
+// Told here, or a source that uses one before it is written makes another.
+template <>
+hid_t native_type<float>();
+template <>
+hid_t native_type<double>();
+template <>
+hid_t native_type<std::int32_t>();
+template <>
+hid_t native_type<std::int64_t>();
+template <>
+hid_t native_type<std::uint8_t>();
 
 /// Memory type of strings as the file keeps them.
 struct TextType {

@@ -39,7 +39,7 @@ class SettingsParser {
  public:
   enum class Source { file, command_line };
   SettingsParser(const std::string& where, SettingsFault fault, Source kind = Source::file)
-      : source_(std::make_shared<const SettingValue::Source>(where, fault)),
+      : source_(std::make_shared<const SettingValue::Source>(SettingValue::Source{where, fault})),
         has_lines_(kind == Source::file) {}
 
   [[nodiscard]] SettingValue parse(std::string_view text) const {
