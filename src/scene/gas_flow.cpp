@@ -43,9 +43,10 @@ GasFlow::GasFlow(const Domain& domain, std::shared_ptr<CellGrid> grid, const par
       gas_(gas),
       force_(array_of(force)),
       pressure_(grid_->size()),
+      mean_pressure_(grid_->size()),
       correction_(grid_->size()) {
   for (std::size_t a = 0; a < 3; ++a)
-    velocity_[a].assign(grid_->face_count(a), 0), mean_[a] = before_[a] = hold_[a] = velocity_[a];
+    velocity_[a].assign(grid_->face_count(a), 0), mean_[a] = before_[a] = hold_[a] = flux_[a] = velocity_[a];
   find_faces(domain, inlets);
   scale_inlets(domain, inlets);
   entry_.assign(static_cast<std::size_t>(std::ranges::count(faces_, Face::Kind::inlet, &Face::kind)), 0);
@@ -194,12 +195,14 @@ double GasFlow::step_of(double dt) const {
 
 void GasFlow::advance(double dt, const GasLoad& load) {
   for (auto& values : mean_) std::ranges::fill(values, 0);
+  std::ranges::fill(mean_pressure_, 0);
   n_steps_ = 0;
   for (double left = dt; left > 1e-9 * dt;) {
     const double h = std::min(left, step_of(left));
     step(h, load);
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t f = 0; f < mean_[a].size(); ++f) mean_[a][f] += h / dt * velocity_[a][f];
+    for (std::size_t c = 0; c < pressure_.size(); ++c) mean_pressure_[c] += h / dt * pressure_[c];
     left -= h;
     ++n_steps_;
   }
@@ -239,26 +242,27 @@ struct GasFlow::Links {
   double sum = 0, wall = 0;  // sum of rates; 1/s times the walls' velocity
 };
 
-GasFlow::Links GasFlow::links(const Face& face, const FaceValues& u) const {
+// Gas carries its velocity through the sides of the face's cell as it fills space, and none through walls.
+GasFlow::Links GasFlow::links(const Face& face, double eps) const {
   Links links;
   const double nu = gas_.viscosity / gas_.density;
   for (std::size_t b = 0; b < 3; ++b) {
     const double h = grid_->step()[b];
-    double speed = u[face.axis][face.number];
-    if (b != face.axis) {
-      speed = 0;
-      for (const auto number : face.cross[b]) speed += 0.25 * u[b][static_cast<std::size_t>(number)];
-    }
-    const double spread = std::max(nu, 0.5 * std::abs(speed) * h) / (h * h);
     for (std::size_t k = 0; k < 2; ++k) {
-      const double rate = spread + (k == 0 ? 0.5 : -0.5) * speed / h;
-      const auto number = b == face.axis ? face.along[k] : face.beside[b][k];
-      const bool is_wall =
-          number == none && b != face.axis;  // half a cell away, where the gas stands with it
+      const bool is_along = b == face.axis;
+      const auto number = is_along ? face.along[k] : face.beside[b][k];
+      const bool is_wall = number == none && !is_along;  // half a cell away, where the gas stands with it
+      double through = 0;
+      if (!is_along)
+        through = 0.5 * (flux(b, face.cross[b][k]) + flux(b, face.cross[b][k + 2]));
+      else if (number != none)
+        through = 0.5 * (flux_[b][face.number] + flux(b, number));
+      const double spread = std::max((is_wall ? 2 : 1) * eps * nu / h, 0.5 * std::abs(through));
+      const double rate = (spread + (k == 0 ? 0.5 : -0.5) * through) / (h * eps);
       links.number[2 * b + k] = number;
       links.rate[2 * b + k] = number == none ? 0 : rate;
-      links.sum += is_wall ? 2 * rate : links.rate[2 * b + k];
-      links.wall += is_wall ? 2 * rate * face.wall[b][k] : 0;
+      links.sum += is_wall ? rate : links.rate[2 * b + k];
+      links.wall += is_wall ? rate * face.wall[b][k] : 0;
     }
   }
   return links;
@@ -268,6 +272,8 @@ GasFlow::Links GasFlow::links(const Face& face, const FaceValues& u) const {
 // fro, each of which keeps what it finds between the values around.
 void GasFlow::foresee(double dt, const GasLoad& load) {
   before_ = velocity_;
+  for (const auto& face : faces_)
+    flux_[face.axis][face.number] = gap(face, load) * before_[face.axis][face.number];
   std::vector<Links> around(faces_.size());
   for (std::size_t k = 0; k < faces_.size(); ++k) {
     const auto& face = faces_[k];
@@ -277,7 +283,7 @@ void GasFlow::foresee(double dt, const GasLoad& load) {
       continue;
     }
     hold_[face.axis][face.number] = gas_.density * eps / dt + load.exchange[face.axis][face.number];
-    around[k] = links(face, before_);
+    around[k] = links(face, eps);
   }
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double change = 0, largest = 0;
@@ -340,7 +346,7 @@ FaceValues GasFlow::pressure_gradient() const {
   auto entry = entry_.begin();
   for (const auto& face : faces_) {
     const bool is_inlet = face.kind == Face::Kind::inlet;
-    gradient[face.axis][face.number] = is_inlet ? *entry++ : drop(face, pressure_);
+    gradient[face.axis][face.number] = is_inlet ? *entry++ : drop(face, mean_pressure_);
   }
   return gradient;
 }
@@ -372,20 +378,21 @@ double GasFlow::inlet_pressure() const {
   for (const auto& face : faces_) {
     if (face.kind != Face::Kind::inlet) continue;
     const double half = (face.low == none ? -0.5 : 0.5) * grid_->step()[face.axis];
-    sum += pressure_[face.inner()] + half * gradient[face.axis][face.number];
+    sum += mean_pressure_[face.inner()] + half * gradient[face.axis][face.number];
     ++n;
   }
   return n > 0 ? sum / n : 0;
 }
 
 std::size_t GasFlow::bytes() const {
-  std::size_t doubles = 4 * pressure_.capacity();
-  for (std::size_t a = 0; a < 3; ++a) doubles += 5 * velocity_[a].capacity();
+  std::size_t doubles = 5 * pressure_.capacity();
+  for (std::size_t a = 0; a < 3; ++a) doubles += 6 * velocity_[a].capacity();
   return doubles * sizeof(double) + faces_.capacity() * sizeof(Face) + grid_->bytes();
 }
 
 void GasFlow::save(io::TensorFile& file) const {
   file.set("gas_pressure", io::Tensor::copy(pressure_, {pressure_.size()}));
+  file.set("gas_mean_pressure", io::Tensor::copy(mean_pressure_, {mean_pressure_.size()}));
   file.set("gas_inlet_gradient", io::Tensor::copy(entry_, {entry_.size()}));
   for (std::size_t a = 0; a < 3; ++a)
     file.set("gas_velocity_" + std::string(1, "xyz"[a]),
@@ -401,6 +408,7 @@ void GasFlow::load(const io::TensorFile& file) {
           .what = "a damaged checkpoint", .where = file.where() + ":" + name, .expected = "finite numbers"});
   };
   read("gas_pressure", pressure_);
+  read(file.has("gas_mean_pressure") ? "gas_mean_pressure" : "gas_pressure", mean_pressure_);
   if (file.has("gas_inlet_gradient")) read("gas_inlet_gradient", entry_);
   for (std::size_t a = 0; a < 3; ++a) read("gas_velocity_" + std::string(1, "xyz"[a]), velocity_[a]);
 }

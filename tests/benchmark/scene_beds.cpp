@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <ctime>
+#include <functional>
+#include <numeric>
 
 #include "elrom/scene/simulation.hpp"
 
@@ -13,14 +15,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace elrom::scene;
 
-// Means over time of what holds a bed up. Pressures in Pa, forces upwards in N.
+// Means over time of what holds a bed up. Pressures in Pa, forces upwards in N. In a layer of height dz and area A the gas
+// loses A dp = weight + dM - walls: M is the flux of vertical momentum that solids carry by moving, up or down. A bed that is
+// thrown up where it is narrow and falls back where it is wide loses more than its weight.
 class Balance {
  public:
   Balance(const Simulation& simulation, double from)
       : simulation_(simulation), from_(from), mass_(mass_of(simulation.state().particles)) {
     const auto& grid = simulation.flow()->grid();
     in_layer_ = grid.count()[0] * grid.count()[1];
-    for (auto* values : {&area_, &layer_pressure_, &layer_head_, &layer_mass_, &layer_momentum_})
+    for (auto* values : {&area_, &layer_pressure_, &layer_head_, &layer_mass_, &layer_momentum_, &layer_flux_,
+                         &layer_gas_flux_, &layer_lift_})
       values->assign(grid.count()[2], 0);
     for (std::size_t c = 0; c < grid.size(); ++c)
       if (grid.is_open(c)) area_[c / in_layer_] += grid.space(c) / grid.step()[2];
@@ -48,6 +53,9 @@ class Balance {
     return {{"pressure_drop_pa", mean(pressure_)},
             {"weight_per_area_pa", mean(head_)},
             {"dp_error", pressure_ / head_ - 1},
+            {"solids_acceleration_pa", mean(acceleration(layer_flux_, 0))},
+            {"gas_acceleration_pa", mean(acceleration(layer_gas_flux_, inflow_))},
+            {"gas_carries_pa", mean(carried())},
             {"gas_lifts_of_weight", lift_ / weight_},
             {"walls_lift_of_weight", (walls_ - lift_ + weight_) / weight_},
             {"mass_error", mass / mass_ - 1},
@@ -58,14 +66,18 @@ class Balance {
   [[nodiscard]] Json planes() const {
     const auto& grid = simulation_.flow()->grid();
     Json rows = Json::array();
-    double above = 0;
+    double above = 0, carried = 0;
     for (std::size_t k = area_.size(); k-- > 0;) {
-      const double own = layer_head_[k] / static_cast<double>(n_);
+      const double own = layer_head_[k] / static_cast<double>(n_),
+                   lift = layer_lift_[k] / static_cast<double>(n_) / area_[k];
       rows.push_back({{"z_m", grid.centre(k * in_layer_).z},
                       {"pressure_pa", layer_pressure_[k] / static_cast<double>(n_)},
                       {"weight_above_pa", above + 0.5 * own},
+                      {"carried_above_pa", carried + 0.5 * lift},
+                      {"flux_pa", layer_flux_[k] / static_cast<double>(n_)},
+                      {"gas_flux_pa", layer_gas_flux_[k] / static_cast<double>(n_)},
                       {"solids_m_per_s", layer_mass_[k] > 0 ? layer_momentum_[k] / layer_mass_[k] : 0}});
-      above += own;
+      above += own, carried += lift;
     }
     return rows;
   }
@@ -78,25 +90,59 @@ class Balance {
       if (grid.is_open(c))
         layer_pressure_[c / in_layer_] +=
             simulation_.flow()->pressure()[c] * grid.space(c) / (area_[c / in_layer_] * grid.step()[2]);
+    std::vector<double> solids(grid.size(), 0);  // m3
     const double g = -simulation_.settings().gravity.z, gas = simulation_.settings().gas_properties.density;
     for (std::size_t i = 0; i < p.size(); ++i) {
       const double weight = p.mass[i] * g * (1 - gas / p.density[i]);
-      const auto layer = grid.cell_at(get(p.place, i)) / in_layer_;
+      const auto cell = grid.cell_at(get(p.place, i)), layer = cell / in_layer_;
+      solids[cell] += p.mass[i] / p.density[i];
       weight_ += weight;
       layer_head_[layer] += weight / area_[layer];
       layer_mass_[layer] += p.mass[i], layer_momentum_[layer] += p.mass[i] * p.velocity[2][i];
+      layer_flux_[layer] += p.mass[i] * p.velocity[2][i] * p.velocity[2][i] / (area_[layer] * grid.step()[2]);
       head_ += weight / area_[layer];
-      if (i < s.push[2].size()) lift_ += p.mass[i] * s.push[2][i] + weight;
+      if (i >= s.push[2].size()) continue;
+      const double lift = p.mass[i] * s.push[2][i] + weight;
+      lift_ += lift, layer_lift_[layer] += lift;
     }
+    const auto& w = simulation_.flow()->velocity()[2];
+    for (std::size_t c = 0; c < grid.size(); ++c) {
+      if (!grid.is_open(c)) continue;
+      if (c < in_layer_) {
+        const double in = w[grid.face(c, 2, -1)];
+        inflow_ += gas * in * in * grid.space(c) / grid.step()[2];
+      }
+      const double speed = 0.5 * (w[grid.face(c, 2, -1)] + w[grid.face(c, 2, 1)]);
+      layer_gas_flux_[c / in_layer_] +=
+          gas * (grid.space(c) - solids[c]) * speed * speed / (area_[c / in_layer_] * grid.step()[2]);
+    }
+  }
+
+  // Sums over time of what the gas carries, and of what accelerates solids, each over its layer's area.
+  [[nodiscard]] double carried() const {
+    return std::transform_reduce(layer_lift_.begin(), layer_lift_.end(), area_.begin(), 0.0, std::plus(),
+                                 std::divides());
+  }
+  // @param flux of each layer, over its area @param from what comes in below, N
+  [[nodiscard]] double acceleration(const std::vector<double>& flux, double from) const {
+    double sum = 0, below = from;
+    for (std::size_t k = 0; k < area_.size(); ++k) {
+      const double own = flux[k] * area_[k];
+      const double above = k + 1 < area_.size() ? 0.5 * (own + flux[k + 1] * area_[k + 1]) : own;
+      sum += (above - below) / area_[k];
+      below = above;
+    }
+    return sum;
   }
 
   const Simulation& simulation_;
   double from_, mass_, before_ = 0;
   std::size_t in_layer_ = 1;  // cells
   std::vector<double> area_;  // of each layer of cells, m2
-  std::vector<double> layer_pressure_, layer_head_, layer_mass_, layer_momentum_;  // sums over time
+  std::vector<double> layer_pressure_, layer_head_, layer_mass_, layer_momentum_, layer_flux_,
+      layer_gas_flux_, layer_lift_;  // sums over time
   std::int64_t n_ = 0;
-  double pressure_ = 0, head_ = 0, weight_ = 0, lift_ = 0, walls_ = 0;
+  double pressure_ = 0, head_ = 0, weight_ = 0, lift_ = 0, walls_ = 0, inflow_ = 0;
 };
 
 Json run_bed(const SceneSettings& settings, double from) {

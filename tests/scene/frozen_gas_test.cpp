@@ -64,7 +64,8 @@ TEST(SceneFrozenGas, FolderOfARunGivesTheGasThatItEndedWith) {
   for (const Vec place : {Vec{0.005, 0.005, 0.02}, {0.001, 0.009, 0.003}}) {
     std::array<Shares, 3> faces;
     for (std::size_t a = 0; a < 3; ++a) faces[a] = flow.grid().faces(place, a);
-    EXPECT_EQ(gas_at(*gas, place), read(flow.velocity(), faces));
+    const Vec miss = gas_at(*gas, place) - read(flow.velocity(), faces);
+    EXPECT_LT(std::sqrt(dot(miss, miss)), 1e-14);  // products are summed in another order
     EXPECT_GT(gas_at(*gas, place).z, 0.1);
   }
 }

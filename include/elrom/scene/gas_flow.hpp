@@ -3,13 +3,13 @@
 // on a staggered grid (cell_grid.hpp).
 //
 //   div(eps u + S) = 0            S: flux of the solids, so that gas and solids fill space
-//   eps rho (du/dt + u . grad u) = -eps grad p + eps mu lap u + K (u_s - u)
+//   d(eps rho u)/dt + div(eps rho u u) = -eps grad p + eps mu lap u + K (u_s - u)
 //
 // p is without the gas's own weight; spheres' buoyancy is an effect of its own. The drag is implicit, in the
 // pressure's equation too, so that no K makes it unstable; convection and viscosity are implicit too, in
-// steps in which the gas crosses four cells at most. Convection by central differences, with as much
-// diffusion as keeps them monotone (Spalding's hybrid scheme): second order where |u| h < 2 nu, first where
-// it is faster. Walls: no slip; cells are in or out, so walls that lean are stairs. Inlets: a velocity,
+// steps in which the gas crosses four cells at most. Convection by the fluxes that fill space and central
+// differences, with as much diffusion as keeps them monotone (Spalding's hybrid scheme): second order where
+// |u| h < 2 nu, first where it is faster. What one cell loses another gains, and walls take friction only. Walls: no slip; cells are in or out, so walls that lean are stairs. Inlets: a velocity,
 // scaled so that the side's flow is exact. Outlets: pressure 0.
 //
 // Thread rule: one thread.
@@ -61,7 +61,7 @@ class GasFlow {
   /// Mean over the last advance().
   [[nodiscard]] const FaceValues& mean_velocity() const { return mean_; }
   [[nodiscard]] const std::vector<double>& pressure() const { return pressure_; }  ///< Pa, by cell
-  /// grad p, Pa/m, by face; 0 on closed ones. On an inlet, where the gas's velocity is given, it is what
+  /// grad p, Pa/m, by face, mean over the last advance(), as spheres feel it; 0 on closed ones. On an inlet, where the gas's velocity is given, it is what
   /// holds the drag there.
   [[nodiscard]] FaceValues pressure_gradient() const;
 
@@ -71,7 +71,7 @@ class GasFlow {
   [[nodiscard]] double flow_out() const { return flow_out_; }
   /// Largest |div(eps u + S)| over the largest flux through a face per cell size.
   [[nodiscard]] double divergence() const { return divergence_; }
-  /// Mean pressure on the inlets, Pa; 0 without.
+  /// Mean pressure on the inlets over the last advance(), Pa; 0 without.
   [[nodiscard]] double inlet_pressure() const;
   [[nodiscard]] int steps() const { return n_steps_; }  ///< in the last advance()
 
@@ -90,7 +90,10 @@ class GasFlow {
   void step(double dt, const GasLoad& load);
   void foresee(double dt, const GasLoad& load);
   void project(const GasLoad& load);
-  [[nodiscard]] Links links(const Face& face, const FaceValues& u) const;
+  [[nodiscard]] double flux(std::size_t axis, std::int32_t face) const {
+    return flux_[axis][static_cast<std::size_t>(face)];
+  }
+  [[nodiscard]] Links links(const Face& face, double eps) const;
   [[nodiscard]] double foreseen(const Face& face, const Links& around, double dt, const GasLoad& load) const;
   [[nodiscard]] double gap(const Face& face, const GasLoad& load) const;
   [[nodiscard]] double drop(const Face& face, const std::vector<double>& p) const;  // gradient
@@ -102,8 +105,8 @@ class GasFlow {
   std::array<double, 3> force_;
   std::vector<Face> faces_;
   std::unique_ptr<Equation> equation_;
-  FaceValues velocity_, mean_, before_, hold_;  // hold_: rho eps / dt + K
-  std::vector<double> pressure_, correction_;
+  FaceValues velocity_, mean_, before_, flux_, hold_;  // flux_: eps u; hold_: rho eps / dt + K
+  std::vector<double> pressure_, mean_pressure_, correction_;
   std::vector<double> entry_;  // grad p on the inlets' faces, in their order
   double flow_in_ = 0, flow_out_ = 0, divergence_ = 0;
   int n_steps_ = 0;
