@@ -76,28 +76,27 @@ TEST(SceneGasFlow, DropsThePressureOfAPackedBedByErgunsEquation) {
 }
 
 // Half a cell from an inlet to the first centre: there the gas's velocity is given, the drag on it is not.
-// A jet into a wider duct, nearly without viscosity. What comes in, and what presses and flows on the step around
-// the jet, is what goes out: walls carry no momentum away.
-TEST(SceneGasFlow, KeepsItsMomentumWhereADuctWidens) {
-  const Domain domain({test::box({-0.005, -0.005, 0}, {0.005, 0.005, 0.01}, "narrow"),
-                       test::box({-0.01, -0.01, 0.01}, {0.01, 0.01, 0.05}, "wide")},
-                      {"wide.z_high"}, {"narrow.z_high", "wide.z_low"});
+// A jet from the side into a shaft, nearly without viscosity: what goes up at the outlet is what presses and
+// flows on the floor, for walls carry no momentum away.
+TEST(SceneGasFlow, KeepsItsMomentumBetweenWalls) {
+  const Domain domain({test::box({-0.02, -0.005, 0.005}, {-0.01, 0.005, 0.015}, "pipe"),
+                       test::box({-0.01, -0.01, 0}, {0.01, 0.01, 0.04}, "shaft")},
+                      {"shaft.z_high"}, {"pipe.x_high", "shaft.x_low"});
   const particle::Gas gas{1.2, 1e-9};
   const double u = 2, h = 0.0025;
-  GasFlow flow(domain, std::make_shared<CellGrid>(domain, Vec{h, h, h}), gas, {{"narrow.z_low", {0, 0, u}}});
+  GasFlow flow(domain, std::make_shared<CellGrid>(domain, Vec{h, h, h}), gas, {{"pipe.x_low", {u, 0, 0}}});
   for (int k = 0; k < 400; ++k) flow.advance(2e-3, flow.no_load());
   const auto& g = flow.grid();
   const auto& w = flow.velocity()[2];
-  double in = (flow.inlet_pressure() + gas.density * u * u) * 1e-4, out = 0;
+  double in = 0, out = 0;
   for (std::size_t c = 0; c < g.size(); ++c) {
-    if (!g.is_open(c)) continue;
+    if (!g.is_open(c) || g.centre(c).x < -0.01) continue;
     const double z = g.centre(c).z, above = w[g.face(c, 2, 1)];
-    // A step's cells: half of what goes up through their upper face passes their middle.
-    const bool is_on_step = z > 0.01 && z < 0.01 + h && !g.is_face_open(2, g.face(c, 2, -1));
-    if (is_on_step) in += (flow.pressure()[c] + 0.5 * gas.density * above * std::min(above, 0.0)) * h * h;
-    if (z > 0.05 - h) out += gas.density * above * above * h * h;
+    // Half of what goes through the upper face of a cell on the floor passes its middle.
+    if (z < h) in += (flow.pressure()[c] + 0.5 * gas.density * above * std::min(above, 0.0)) * h * h;
+    if (z > 0.04 - h) out += gas.density * above * above * h * h;
   }
-  EXPECT_NEAR(out, in, 0.01 * gas.density * u * u * 1e-4);
+  EXPECT_NEAR(out, in, 0.05 * gas.density * u * u * 1e-4);  // the mouth of the pipe holds a little
 }
 
 TEST(SceneGasFlow, PressureOnAnInletHoldsTheDragOnItsFaces) {
