@@ -164,27 +164,28 @@ Json straight_beds(bool small, const std::string& collisions, const std::vector<
   Json rows = Json::array();
   // dem takes minutes a speed.
   const bool is_dem = collisions == "dem";
-  for (const double speed : is_dem ? std::vector{0.2} : std::vector{0.12, 0.2, 0.5}) {
-    const auto text = fmt::format(
-        "[scene]\nduration = {}\ntime_step = 1e-3\n[domain]\noutlets = [\"box.z_high\"]\n"
-        "[gas]\nmodel = \"coupled\"\n[grid]\ncell = [0.0025, 0.0025, 0.0025]\n"
-        "[effects]\ngravity = [0, 0, -9.81]\nbuoyancy = true\ndrag = \"gidaspow\"\nrecirculation = \"box\"\n"
-        "collisions = \"{}\"\n[walls]\nnormal_restitution = 0.8\ntangential_restitution = 0.8\n"
-        "[collisions]\nrestitution = 0.9\nstiffness = 200\n"
-        "[[domain.boxes]]\nname = \"box\"\nlow = [0, 0, 0]\nhigh = [0.01, 0.01, 0.04]\n"
-        "[[regions]]\nname = \"bottom\"\nlow = [0, 0, 0]\nhigh = [0.01, 0.01, 0.02]\n"
-        "[[gas.inlets]]\nside = \"box.z_low\"\nvelocity = [0, 0, {}]\n"
-        "[[particles]]\ngroup = \"a\"\ndiameter = \"475 um\"\nregion = \"bottom\"\n"
-        "arrangement = \"lattice\"\nparcels = {}\nnumber = 8000\n",
-        small    ? 0.1
-        : is_dem ? 0.5
-                 : 1,
-        collisions, speed, is_dem ? 1 : 4);
-    const auto settings = parse_scene(text, "bed", changes);
-    auto row = run_bed(settings, (small ? 0.5 : 0.4) * settings.duration);
-    row["collisions"] = collisions, row["gas_m_per_s"] = speed;
-    rows.push_back(row);
-  }
+  for (const double filled : is_dem || small ? std::vector{0.02} : std::vector{0.02, 0.08})
+    for (const double speed : is_dem ? std::vector{0.2} : std::vector{0.12, 0.2, 0.5}) {
+      const auto text = fmt::format(
+          "[scene]\nduration = {}\ntime_step = 1e-3\n[domain]\noutlets = [\"box.z_high\"]\n"
+          "[gas]\nmodel = \"coupled\"\n[grid]\ncell = [0.0025, 0.0025, 0.0025]\n"
+          "[effects]\ngravity = [0, 0, -9.81]\nbuoyancy = true\ndrag = \"gidaspow\"\nrecirculation = \"box\"\n"
+          "collisions = \"{}\"\n[walls]\nnormal_restitution = 0.8\ntangential_restitution = 0.8\n"
+          "[collisions]\nrestitution = 0.9\nstiffness = 200\n"
+          "[[domain.boxes]]\nname = \"box\"\nlow = [0, 0, 0]\nhigh = [0.01, 0.01, {}]\n"
+          "[[regions]]\nname = \"bottom\"\nlow = [0, 0, 0]\nhigh = [0.01, 0.01, {}]\n"
+          "[[gas.inlets]]\nside = \"box.z_low\"\nvelocity = [0, 0, {}]\n"
+          "[[particles]]\ngroup = \"a\"\ndiameter = \"475 um\"\nregion = \"bottom\"\n"
+          "arrangement = \"lattice\"\nparcels = {}\nnumber = {}\n",
+          small    ? 0.1
+          : is_dem ? 0.5
+                   : 1,
+          collisions, 2 * filled, filled, speed, is_dem ? 1 : 4, std::lround(4e5 * filled));
+      const auto settings = parse_scene(text, "bed", changes);
+      auto row = run_bed(settings, (small ? 0.5 : 0.4) * settings.duration);
+      row["collisions"] = collisions, row["filled_m"] = filled, row["gas_m_per_s"] = speed;
+      rows.push_back(row);
+    }
   return rows;
 }
 

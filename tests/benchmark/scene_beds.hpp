@@ -6,7 +6,7 @@
 
 namespace elrom::benchmark {
 
-/// A straight column of 10 mm x 10 mm, at some speeds.
+/// A straight column of 10 mm x 10 mm, filled to 20 and 80 mm, at some speeds.
 [[nodiscard]] nlohmann::ordered_json straight_beds(bool small, const std::string& collisions,
                                                    const std::vector<std::string>& changes);
 /// examples/11_small_cfb, 10 s. @param changes of its settings, as elrom-simulate --set

@@ -38,7 +38,7 @@ struct Target {
   Target() {
     std::filesystem::create_directories(folder / "page");
     test::write_bytes(folder / "page/index.html", "<p>");
-    test::write_bytes(folder / "secret.txt", "secret");
+    test::write_bytes(folder / "hidden.txt", "treasure");
     test::sample_bundle({}).write(folder / "model.elrom");
     service = std::make_unique<serve::Service>(
         serve::ServiceOptions{.repository = {.folder = folder / "data"},
@@ -102,9 +102,9 @@ void fuzz_service_request(Bytes input) {
   const auto answer = served.service->handle(request);
   expect(answer.status != 500, "the server made a mistake: " + answer.body);
   expect(answer.status < 503, "the server is in trouble: " + answer.body);
-  expect(answer.body.find("secret") == std::string::npos ||
-             (request.method + request.target).find("secret") != std::string::npos ||
-             request.body.find("secret") != std::string::npos,
+  // What was asked may be told back.
+  expect(answer.body.find("treasure") == std::string::npos ||
+             text_of(input).find("treasure") != std::string::npos,
          "a file outside of the page's folder");
   (void)served.service->body_limit(request);
   served.service->done({.request = request, .status = answer.status, .answer_bytes = 0, .seconds = 0});
@@ -142,7 +142,7 @@ void fuzz_scenario(Bytes input) {
 }
 
 /// As `elrom-serve --judge-fields` does.
-void fuzz_upload(Bytes input) {
+void judge_upload(Bytes input) {
   static const test::SampleRun sample;
   try {
     const auto file = memory_file("upload.hdf", input);
@@ -159,11 +159,19 @@ std::string sample_upload() {
   return test::read_bytes(file);
 }
 
+void fuzz_upload(Bytes input) {
+  // HDF5 keeps what it needs for any file from the first that it reads: that is not an input's cost.
+  static const std::string first = sample_upload();
+  [[maybe_unused]] static const bool is_warm =
+      (judge_upload({reinterpret_cast<const std::uint8_t*>(first.data()), first.size()}), true);
+  judge_upload(input);
+}
+
 std::vector<std::string> request_seeds() {
   const std::string json = "Content-Type: application/json\nIdempotency-Key: k\n\n";
   return {
       "GET /scenarios?after=0&limit=10\nIf-None-Match: *\n\n",
-      "GET /..%2fsecret.txt\n\n",
+      "GET /..%2fhidden.txt\n\n",
       "POST /scenarios\n" + json +
           R"({"name": "a", "load": 0.6, "inputs": {"flow_0 [kg/s]": 7, "flow_1 [kg/s]": 14, "flow_2 [kg/s]": 21, "flow_3 [t/h]": 100}})",
       "PUT /scenarios/1\nIf-Match: \"1\"\n" + json + R"({"name": "b", "inputs": {"flow_0 [kg/s]": -7}})",
