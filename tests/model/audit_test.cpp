@@ -102,6 +102,19 @@ TEST(Audit, PlanesOfPointsReachHalfwayToTheNext) {
   EXPECT_NEAR(result.planes[0].gas_flow, 1.6 + 1.8, 1e-6);
 }
 
+TEST(Audit, PlanesOfCellsEndAtTheirCorners) {
+  SmallCase c;
+  // Boxes from plane to plane + 0.6: points and corners of each cell, four below and four above.
+  c.mesh.points.resize(64, 3);
+  for (int cell = 0; cell < 8; ++cell)
+    for (int corner = 0; corner < 8; ++corner) {
+      c.mesh.points.row(8 * cell + corner) << 0, 0, cell / 2 + (corner < 4 ? 0 : 0.6);
+      c.mesh.corners.push_back(8 * cell + corner);
+    }
+
+  EXPECT_NEAR(audit(c.view(), c.settings).planes[2].area, 3.0 / 0.6, 1e-12);
+}
+
 TEST(Audit, GasBalanceIsDrawnOnlyClearOfTheOpenings) {
   const SmallCase c;
 

@@ -128,6 +128,7 @@ TEST(PredictionFile, WhatAPredictorWritesIsReadBack) {
   EXPECT_EQ(stored.bundle_digest, bundle.digest());
   EXPECT_EQ(stored.mesh_digest, bundle.mesh_digest());
   EXPECT_EQ(stored.validity_reason, assessment.reason);
+  EXPECT_EQ(stored.builds, "mean");
   EXPECT_EQ(stored.inputs, inputs.values);
   EXPECT_EQ(stored.input_names, bundle.info().schema.names());
   EXPECT_THAT(stored.planes, ElementsAre(1, 3));
