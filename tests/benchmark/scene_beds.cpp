@@ -15,9 +15,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace elrom::scene;
 
-// Means over time of what holds a bed up. Pressures in Pa, forces upwards in N. In a layer of height dz and area A the gas
-// loses A dp = weight + dM - walls: M is the flux of vertical momentum that solids carry by moving, up or down. A bed that is
-// thrown up where it is narrow and falls back where it is wide loses more than its weight.
+// Means over time of what holds a bed up. Pressures in Pa, forces upwards in N. In a layer of height dz and
+// area A the gas loses A dp = weight + dM - walls: M is the flux of vertical momentum that solids carry by
+// moving, up or down. A bed that is thrown up where it is narrow and falls back where it is wide loses more
+// than its weight.
 class Balance {
  public:
   Balance(const Simulation& simulation, double from)

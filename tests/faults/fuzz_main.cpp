@@ -13,7 +13,8 @@
 
 namespace {
 
-// Twice an input's size, and what any input costs: a predictor's scratch memory, the JSON parser's, a table's buffer of 1 MiB.
+// Twice an input's size, and what any input costs: a predictor's scratch memory, the JSON parser's, a
+// table's buffer of 1 MiB.
 constexpr std::size_t most_per_byte = 2, most_for_any = std::size_t{3} << 19;
 constexpr double most_seconds = 1;
 

@@ -62,7 +62,8 @@ class PostgresqlServer {
   }
 
  private:
-  /// Making an empty cluster costs more than most tests: the first is kept beside the test program, for those that follow.
+  /// Making an empty cluster costs more than most tests: the first is kept beside the test program, for
+  /// those that follow.
   void copy_empty_data() {
     namespace fs = std::filesystem;
     const auto kept = fs::read_symlink("/proc/self/exe").parent_path() /

@@ -9,8 +9,9 @@
 // pressure's equation too, so that no K makes it unstable; convection and viscosity are implicit too, in
 // steps in which the gas crosses four cells at most. Convection by the fluxes that fill space and central
 // differences, with as much diffusion as keeps them monotone (Spalding's hybrid scheme): second order where
-// |u| h < 2 nu, first where it is faster. What one cell loses another gains, and walls take friction only. Walls: no slip; cells are in or out, so walls that lean are stairs. Inlets: a velocity,
-// scaled so that the side's flow is exact. Outlets: pressure 0.
+// |u| h < 2 nu, first where it is faster. What one cell loses another gains, and walls take friction only.
+// Walls: no slip; cells are in or out, so walls that lean are stairs. Inlets: a velocity, scaled so that
+// the side's flow is exact. Outlets: pressure 0.
 //
 // Thread rule: one thread.
 
@@ -61,8 +62,8 @@ class GasFlow {
   /// Mean over the last advance().
   [[nodiscard]] const FaceValues& mean_velocity() const { return mean_; }
   [[nodiscard]] const std::vector<double>& pressure() const { return pressure_; }  ///< Pa, by cell
-  /// grad p, Pa/m, by face, mean over the last advance(), as spheres feel it; 0 on closed ones. On an inlet, where the gas's velocity is given, it is what
-  /// holds the drag there.
+  /// grad p, Pa/m, by face, mean over the last advance(), as spheres feel it; 0 on closed ones. On an
+  /// inlet, where the gas's velocity is given, it is what holds the drag there.
   [[nodiscard]] FaceValues pressure_gradient() const;
 
   /// Gas that came in and went out in the last advance(), m3/s. With the solids' own displacement they
