@@ -242,7 +242,7 @@ struct GasFlow::Links {
   double sum = 0, wall = 0;  // sum of rates; 1/s times the walls' velocity
 };
 
-// Gas carries its velocity through the sides of the face's cell as it fills space, and none through walls.
+// Gas carries its velocity through the sides of the face's cell with its own flux, and none through walls.
 GasFlow::Links GasFlow::links(const Face& face, double eps) const {
   Links links;
   const double nu = gas_.viscosity / gas_.density;
@@ -257,8 +257,10 @@ GasFlow::Links GasFlow::links(const Face& face, double eps) const {
         through = 0.5 * (flux(b, face.cross[b][k]) + flux(b, face.cross[b][k + 2]));
       else if (number != none)
         through = 0.5 * (flux_[b][face.number] + flux(b, number));
-      const double spread = std::max((is_wall ? 2 : 1) * eps * nu / h, 0.5 * std::abs(through));
-      const double rate = (spread + (k == 0 ? 0.5 : -0.5) * through) / (h * eps);
+      const double inflow = k == 0 ? through : -through, spread = eps * nu / h;
+      const double rate = (is_wall ? 2 * spread + std::max(0.0, inflow)
+                                   : std::max(spread, 0.5 * std::abs(through)) + 0.5 * inflow) /
+                          (h * eps);
       links.number[2 * b + k] = number;
       links.rate[2 * b + k] = number == none ? 0 : rate;
       links.sum += is_wall ? rate : links.rate[2 * b + k];

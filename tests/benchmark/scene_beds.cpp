@@ -16,9 +16,9 @@ using Json = nlohmann::ordered_json;
 using namespace elrom::scene;
 
 // Means over time of what holds a bed up. Pressures in Pa, forces upwards in N. In a layer of height dz and
-// area A the gas loses A dp = weight + dM - walls: M is the flux of vertical momentum that solids carry by
-// moving, up or down. A bed that is thrown up where it is narrow and falls back where it is wide loses more
-// than its weight.
+// area A the gas loses A dp = weight + dM - walls: M is the flux of vertical momentum that solids and gas
+// carry by moving, up or down. A bed that is thrown up where it is narrow and falls back where it is wide
+// loses more than its weight.
 class Balance {
  public:
   Balance(const Simulation& simulation, double from)
@@ -106,13 +106,11 @@ class Balance {
       const double lift = p.mass[i] * s.push[2][i] + weight;
       lift_ += lift, layer_lift_[layer] += lift;
     }
+    const double inflow = simulation_.flow()->flow_in();
+    inflow_ += gas * inflow * inflow / area_.front();
     const auto& w = simulation_.flow()->velocity()[2];
     for (std::size_t c = 0; c < grid.size(); ++c) {
       if (!grid.is_open(c)) continue;
-      if (c < in_layer_) {
-        const double in = w[grid.face(c, 2, -1)];
-        inflow_ += gas * in * in * grid.space(c) / grid.step()[2];
-      }
       const double speed = 0.5 * (w[grid.face(c, 2, -1)] + w[grid.face(c, 2, 1)]);
       layer_gas_flux_[c / in_layer_] +=
           gas * (grid.space(c) - solids[c]) * speed * speed / (area_[c / in_layer_] * grid.step()[2]);

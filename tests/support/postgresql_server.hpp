@@ -66,15 +66,17 @@ class PostgresqlServer {
   /// those that follow.
   void copy_empty_data() {
     namespace fs = std::filesystem;
-    const auto kept = fs::read_symlink("/proc/self/exe").parent_path() /
-                      ("postgresql-" + binaries().parent_path().filename().string());
+    const auto kept =
+        fs::read_symlink("/proc/self/exe").parent_path() /
+        ("postgresql-" + binaries().parent_path().filename().string() + "-of-" + std::to_string(::getuid()));
     if (!fs::exists(kept)) {
       make_empty_data();
       const fs::path mine = kept.string() + "." + std::to_string(::getpid());
-      fs::copy(data(), mine, fs::copy_options::recursive);
-      std::error_code another_was_first;
-      fs::rename(mine, kept, another_was_first);
-      if (another_was_first) fs::remove_all(mine);
+      std::error_code not_kept;  // another was first, or nobody may write here: the next makes its own
+      fs::remove_all(mine, not_kept);
+      fs::copy(data(), mine, fs::copy_options::recursive, not_kept);
+      if (!not_kept) fs::rename(mine, kept, not_kept);
+      fs::remove_all(mine, not_kept);
       return;
     }
     fs::copy(kept, data(), fs::copy_options::recursive);
@@ -84,12 +86,12 @@ class PostgresqlServer {
   /// With one database: the two others are two thirds of the files.
   void make_empty_data() {
     // Nothing is fetched from a disk that lost power here, so nothing is waited for.
-    wait_for(begin({program("initdb"), "-D", data(), "-U", "elrom", "-A", "trust", "-E", "UTF8", "--no-sync",
-                    "--no-instructions", "--locale=C", "--wal-segsize=1"}));
+    done(begin({program("initdb"), "-D", data(), "-U", "elrom", "-A", "trust", "-E", "UTF8", "--no-sync",
+                "--no-instructions", "--locale=C", "--wal-segsize=1"}));
     start();
-    wait_for(begin({program("psql"), "-h", folder_.path().string(), "-U", "elrom", "-d", "template1", "-c",
-                    "UPDATE pg_database SET datistemplate = false", "-c", "DROP DATABASE template0", "-c",
-                    "DROP DATABASE postgres"}));
+    done(begin({program("psql"), "-X", "-v", "ON_ERROR_STOP=1", "-h", folder_.path().string(), "-U", "elrom",
+                "-d", "template1", "-c", "UPDATE pg_database SET datistemplate = false", "-c",
+                "DROP DATABASE template0", "-c", "DROP DATABASE postgres"}));
     stop(SIGINT);
   }
   static void give_away(const std::filesystem::path& path) {
@@ -125,6 +127,10 @@ class PostgresqlServer {
       ::_exit(125);
     ::execv(arguments[0], arguments.data());
     ::_exit(127);
+  }
+  void done(pid_t process) const {
+    if (wait_for(process) != 0)
+      throw std::runtime_error("no PostgreSQL cluster: " + read_bytes(folder_ / "log.txt"));
   }
   static int wait_for(pid_t process) {
     int status = 0;

@@ -7,11 +7,11 @@
 //
 // p is without the gas's own weight; spheres' buoyancy is an effect of its own. The drag is implicit, in the
 // pressure's equation too, so that no K makes it unstable; convection and viscosity are implicit too, in
-// steps in which the gas crosses four cells at most. Convection by the fluxes that fill space and central
+// steps in which the gas crosses four cells at most. Convection is in advective form, by the gas's own flux
+// eps u: it conserves momentum where gas alone fills space, and nearly where solids move. Central
 // differences, with as much diffusion as keeps them monotone (Spalding's hybrid scheme): second order where
-// |u| h < 2 nu, first where it is faster. What one cell loses another gains, and walls take friction only.
-// Walls: no slip; cells are in or out, so walls that lean are stairs. Inlets: a velocity, scaled so that
-// the side's flow is exact. Outlets: pressure 0.
+// |u| h < 2 nu, first where it is faster. Walls: no slip, and no flux; cells are in or out, so walls that
+// lean are stairs. Inlets: a velocity, scaled so that the side's flow is exact. Outlets: pressure 0.
 //
 // Thread rule: one thread.
 
