@@ -203,13 +203,7 @@ int run(int argc, char** argv) {
     options.faults = std::min(options.faults, 3);
     options.orders = std::min(options.orders, 2);
   }
-  auto json = Door(options).run();
-  json["program"] = program_version();
-  json["small"] = options.small;
-  const auto text = json.dump(1) + "\n";
-  std::fputs(text.c_str(), stdout);
-  if (!options.json.empty()) base::write_text(options.json, text);
-  return 0;
+  return show(Door(options).run(), options.small, options.json);
 }
 
 }  // namespace

@@ -228,6 +228,6 @@ int main(int argc, char** argv) {
     if (const auto status = line.parse(argc, argv)) return *status;
     Json json;
     for (const auto& part : parts) measure(part, arguments, changes, json);
-    return benchmark::show(std::move(json), arguments);
+    return benchmark::show(std::move(json), arguments.small, arguments.json);
   });
 }

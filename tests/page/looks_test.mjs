@@ -1,5 +1,6 @@
 // How the page looks, against pictures kept in looks/: each drawn small, so that another font does not count and a panel that is gone
-// does. `KEEP=1 ctest -R page/looks` keeps what is seen now, to be looked at and committed.
+// does. `KEEP=1 ctest -R page/looks` keeps what is seen now, to be looked at and committed;
+// TELL=1 says how much differs.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";

@@ -65,12 +65,12 @@ nlohmann::ordered_json trained_report(const StudyArguments& arguments, const std
   return nlohmann::ordered_json::parse(base::read_text(file));
 }
 
-int show(nlohmann::ordered_json json, const Arguments& arguments) {
+int show(nlohmann::ordered_json json, bool small, const std::filesystem::path& file) {
   json["program"] = program_version();
-  json["small"] = arguments.small;
+  json["small"] = small;
   const auto text = json.dump(1) + "\n";
   std::fputs(text.c_str(), stdout);
-  if (!arguments.json.empty()) base::write_text(arguments.json, text);
+  if (!file.empty()) base::write_text(file, text);
   return 0;
 }
 
@@ -81,7 +81,7 @@ int benchmark_main(const std::string& name, const std::string& what, const std::
     Arguments arguments;
     arguments.add_to(line, store_help);
     if (const auto status = line.parse(argc, argv)) return *status;
-    return show(measure(arguments), arguments);
+    return show(measure(arguments), arguments.small, arguments.json);
   });
 }
 

@@ -117,8 +117,9 @@ inline std::filesystem::path generate_store(const std::filesystem::path& folder,
   return store;
 }
 
-/// Prints the figures, with the version and whether they are --small, and writes them to --json. @return 0
-int show(nlohmann::ordered_json json, const Arguments& arguments);
+/// Prints the figures, with the version and whether they are --small; writes them to `file` where it has a
+/// name. @return 0
+int show(nlohmann::ordered_json json, bool small, const std::filesystem::path& file);
 
 /// Body of a benchmark's main: parses, measures, prints and writes the figures.
 int benchmark_main(const std::string& name, const std::string& what, const std::string& store_help, int argc,
