@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <limits>
 
 namespace elrom::math {
 
@@ -10,6 +11,15 @@ using Eigen::MatrixXd;
 SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
   return {solver.eigenvalues(), solver.eigenvectors(), solver.info() == Eigen::Success};
+}
+
+MatrixXd least_norm_solution(const MatrixXd& matrix, const MatrixXd& right) {
+  const SymmetricEigen eigen = symmetric_eigen(matrix);
+  const double zero = static_cast<double>(matrix.rows()) * std::numeric_limits<double>::epsilon() *
+                      eigen.values.cwiseAbs().maxCoeff();
+  const Eigen::VectorXd inverse =
+      (eigen.values.array().abs() > zero).select(eigen.values.array().inverse(), 0);
+  return eigen.vectors * (inverse.asDiagonal() * (eigen.vectors.transpose() * right));
 }
 
 Cholesky::Cholesky(const MatrixXd& matrix) : lower_(matrix) {

@@ -1,7 +1,6 @@
 #include "elrom/math/rbf.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "elrom/base/enum_names.hpp"
 #include "elrom/math/kernel.hpp"
+#include "elrom/math/linear_algebra.hpp"
 
 namespace elrom::math {
 
@@ -59,8 +59,7 @@ Eigen::MatrixXd solve(const Eigen::MatrixXd& system, const Eigen::MatrixXd& righ
   const Eigen::MatrixXd solution = system.partialPivLu().solve(right);
   const double error = (system * solution - right).norm();
   if (error <= 1e-8 * (system.norm() * solution.norm() + right.norm())) return solution;
-  // Repeated points, or constant inputs under a tail of degree 1: the solution of least norm.
-  return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(system).solve(right);
+  return least_norm_solution(system, right);  // repeated points, or constant inputs under a tail of degree 1
 }
 
 }  // namespace

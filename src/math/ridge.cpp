@@ -1,9 +1,10 @@
 #include "elrom/math/ridge.hpp"
 
-#include <Eigen/SVD>
 #include <limits>
+#include <utility>
 
 #include "elrom/base/error.hpp"
+#include "elrom/math/linear_algebra.hpp"
 
 namespace elrom::math {
 
@@ -12,47 +13,39 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// x = U S V^T of the centred inputs: every penalty then costs only n * rank * n_targets.
-struct Decomposition {
-  MatrixXd u, v;
-  VectorXd s;
-};
-
-/// Residuals of fits that left one case out each: (y - H y)_i / (1 - H_ii), H = 1/n + U S^2/(S^2+a) U^T.
-MatrixXd loo_residuals(const Decomposition& d, const MatrixXd& y_centred, const MatrixXd& uty,
-                       double penalty) {
-  const VectorXd shrink = d.s.array().square() / (d.s.array().square() + penalty);
-  const MatrixXd residual = y_centred - d.u * (shrink.asDiagonal() * uty);
-  const VectorXd leverage =
-      (d.u.array().square().matrix() * shrink).array() + 1.0 / static_cast<double>(y_centred.rows());
-  return residual.array().colwise() / (1 - leverage.array()).cwiseMax(1e-12);
-}
-
-/// Centred inputs, decomposed, and centred targets.
+/// Centred inputs x = T V^T with T^T T = diag(l): every penalty then costs only n * n_inputs * n_targets.
 struct Problem {
   Eigen::RowVectorXd x_mean, y_mean;
-  MatrixXd y_centred, uty;
-  Decomposition d;
+  MatrixXd y_centred, t, v, tty;
+  VectorXd l;
 
   Problem(const MatrixD& x, const MatrixXd& y, std::span<const double> penalties)
       : x_mean(x.colwise().mean()), y_mean(y.colwise().mean()), y_centred(y.rowwise() - y_mean) {
     check(!penalties.empty() && x.rows() == y.rows() && x.rows() > 0, "ridge: cases, targets and a penalty");
-    const Eigen::JacobiSVD<MatrixXd> svd(MatrixXd(x.rowwise() - x_mean),
-                                         Eigen::ComputeThinU | Eigen::ComputeThinV);
-    d = {svd.matrixU(), svd.matrixV(), svd.singularValues()};
-    uty = d.u.transpose() * y_centred;
+    const MatrixXd centred = x.rowwise() - x_mean;
+    SymmetricEigen eigen = symmetric_eigen(centred.transpose() * centred);
+    l = eigen.values.cwiseMax(0);
+    v = std::move(eigen.vectors);
+    t = centred * v;
+    tty = t.transpose() * y_centred;
   }
 
-  [[nodiscard]] MatrixXd residuals(double penalty) const { return loo_residuals(d, y_centred, uty, penalty); }
+  /// Of fits that left one case out each: (y - H y)_i / (1 - H_ii), H = 1/n + T (diag(l) + a)^-1 T^T.
+  [[nodiscard]] MatrixXd residuals(double penalty) const {
+    const VectorXd inverse = (l.array() + penalty).inverse();
+    const MatrixXd residual = y_centred - t * (inverse.asDiagonal() * tty);
+    const VectorXd leverage =
+        (t.array().square().matrix() * inverse).array() + 1.0 / static_cast<double>(t.rows());
+    return residual.array().colwise() / (1 - leverage.array()).cwiseMax(1e-12);
+  }
 
   /// What follows from the penalty of each target and its residuals.
   void solve(const VectorXd& penalties, Ridge& ridge) const {
     ridge.loo_variance = ridge.loo_residuals.colwise().squaredNorm().transpose() /
                          static_cast<double>(ridge.loo_residuals.rows());
-    MatrixXd scaled = uty;
-    for (Eigen::Index k = 0; k < scaled.cols(); ++k)
-      scaled.col(k).array() *= d.s.array() / (d.s.array().square() + penalties[k]);
-    ridge.weights = d.v * scaled;
+    MatrixXd scaled = tty;
+    for (Eigen::Index k = 0; k < scaled.cols(); ++k) scaled.col(k).array() /= l.array() + penalties[k];
+    ridge.weights = v * scaled;
     ridge.intercept = (y_mean - x_mean * ridge.weights).transpose();
   }
 };

@@ -159,7 +159,7 @@ Tally under(const std::vector<Failure>& failures, const Workshop& shop, const st
   fs::create_directories(folder);
   if (run(shop.import_command(folder / "old.h5", shop.case_files(8))).status != 0)
     throw std::runtime_error("cannot import");
-  shop.make_study(folder / "study_before", 10);
+  shop.make_study(folder / "study_before", 10, std::string(Workshop::quick) + Workshop::two_fields);
   for (const auto& failure : failures) {
     fail_programs(failure, shop, folder, tally);
     fail_collisions(failure, shop, folder, tally);

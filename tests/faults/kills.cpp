@@ -160,7 +160,7 @@ void kill_starts(const Workshop& shop, std::size_t n, base::Random& random, Tall
 /// Kills through one set until a run ends by itself; its bytes are those of a run left alone.
 void kill_collisions(const Workshop& shop, std::size_t n, base::Random& random, Tally& tally) {
   const auto whole = shop.folder / "whole_collisions.h5", output = shop.folder / "killed_collisions.h5";
-  constexpr std::size_t n_pairs = 60000;
+  const std::size_t n_pairs = shop.times(60000, 20000);
   const auto made = run(shop.collide_command(whole, n_pairs));
   if (made.status != 0) throw std::runtime_error("cannot collide: " + made.output);
   const auto wanted = base::sha256_file(whole);

@@ -54,6 +54,21 @@ TEST(SymmetricEigen, SaysWhenTheMatrixIsNotFinite) {
   EXPECT_FALSE(symmetric_eigen(a).converged);
 }
 
+TEST(LeastNormSolution, SolvesAnIndefiniteSystem) {
+  const MatrixXd a = random_positive(30) - 20 * MatrixXd::Identity(30, 30),
+                 x = random_positive(30).leftCols(2);
+
+  EXPECT_TRUE(least_norm_solution(lower_only(a), a * x).isApprox(x, 1e-10));
+}
+
+TEST(LeastNormSolution, OfManySolutionsTheSmallest) {
+  // x + y = 2 twice over, and x + y = 4 beside it: their mean, shared equally
+  const MatrixXd ones = MatrixXd::Ones(2, 2);
+
+  EXPECT_TRUE(least_norm_solution(ones, Eigen::Vector2d(2, 2)).isApprox(Eigen::Vector2d(1, 1), 1e-14));
+  EXPECT_TRUE(least_norm_solution(ones, Eigen::Vector2d(2, 4)).isApprox(Eigen::Vector2d(1.5, 1.5), 1e-14));
+}
+
 TEST(Cholesky, KnowsATwoByTwoByHand) {
   // L = [2 0; 1 3]
   const Cholesky factor((MatrixXd(2, 2) << 4, 2, 2, 10).finished());

@@ -17,6 +17,12 @@ struct SymmetricEigen {
 /// @param matrix A (n, n); its lower triangle is read
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 
+/// Of all X that make |A X - B| least the smallest, by the pseudo-inverse (section 5.5.2): A may be singular
+/// and indefinite.
+/// @param matrix A (n, n); its lower triangle is read @param right B (n, m)
+[[nodiscard]] Eigen::MatrixXd least_norm_solution(const Eigen::MatrixXd& matrix,
+                                                  const Eigen::MatrixXd& right);
+
 /// K = L L^T
 class Cholesky {
  public:
