@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "elrom/base/error.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "fast_screen.hpp"
 
 namespace elrom::networks {
@@ -141,7 +141,7 @@ TEST(FastScreen, ResidualsEqualThoseOfRefittingWithoutTheCase) {
       gram += f * f.transpose();
       moments += f * data.targets.row(r).cast<double>();
     }
-    const Eigen::MatrixXd weights = gram.ldlt().solve(moments);
+    const Eigen::MatrixXd weights = math::Cholesky(gram).solve(moments);
     for (Eigen::Index r = left_out * 4; r < left_out * 4 + 4; ++r) {
       const Eigen::RowVectorXd e =
           data.targets.row(r).cast<double>() - features.row(r).cast<double>() * weights;

@@ -3,13 +3,13 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "elrom/base/atomic_file.hpp"
 #include "elrom/base/log.hpp"
 #include "elrom/field/snapshot_store.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "report/small_study.hpp"
 
 namespace elrom::report {
@@ -187,7 +187,7 @@ TEST(LearningCurve, AddedNoiseComesThroughByTheMethodsLeverage) {
   design << MatrixD::Ones(12, 1), store.inputs(training);
   Eigen::RowVector3d at;
   at << 1, store.inputs(runs);
-  const double leverage = at.dot((design.transpose() * design).ldlt().solve(at.transpose()));
+  const double leverage = at.dot(math::Cholesky(design.transpose() * design).solve(at.transpose()).col(0));
   const MatrixD values = store.read("gas_velocity_z", training).cast<double>(),
                 truth = store.read("gas_velocity_z", runs).cast<double>();
   constexpr double sigma = 0.05;  // of the made-up runs

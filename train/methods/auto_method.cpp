@@ -1,6 +1,5 @@
 #include "elrom/methods/auto_method.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -8,6 +7,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/model/composite_models.hpp"
@@ -53,7 +53,7 @@ VectorXd unconstrained(const MatrixXd& gram, const std::vector<Index>& members) 
       part(i, j) = gram(members[static_cast<std::size_t>(i)], members[static_cast<std::size_t>(j)]);
   }
   part.diagonal().array() += 1e-12 * part.trace() + 1e-300;  // equal candidates share their weight
-  const VectorXd solution = part.ldlt().solve(VectorXd::Ones(n));
+  const VectorXd solution = math::Cholesky(part).solve(VectorXd::Ones(n));
   return solution / solution.sum();
 }
 

@@ -1,6 +1,5 @@
 #include "elrom/surrogate/learn_chebyshev.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <numeric>
 
 #include "elrom/base/error.hpp"
+#include "elrom/math/linear_algebra.hpp"
 
 namespace elrom::surrogate {
 namespace {
@@ -123,7 +123,7 @@ class Fit {
     terms *= size.cwiseInverse().asDiagonal();
     Eigen::MatrixXd normal = terms.transpose() * terms;
     normal.diagonal().array() += ridge;
-    const Eigen::MatrixXd solution = normal.ldlt().solve(terms.transpose() * targets);
+    const Eigen::MatrixXd solution = math::Cholesky(normal).solve(terms.transpose() * targets);
     panel.error += (terms * solution - targets).squaredNorm();
     for (Eigen::Index output = 0; output < n_outputs; ++output)
       for (Eigen::Index l = 0; l < n_monomials; ++l)
