@@ -98,9 +98,7 @@ function(elrom_library name)
     set(ARG_HEADERS ${name})
   endif()
   foreach(folder IN LISTS ARG_HEADERS)
-    # toml++ is ours to read settings with, not our callers'.
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/elrom/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/elrom
-            PATTERN toml.hpp EXCLUDE)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/elrom/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/elrom)
   endforeach()
 endfunction()
 

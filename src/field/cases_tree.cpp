@@ -11,7 +11,7 @@
 #include "elrom/base/units.hpp"
 #include "elrom/field/case_json.hpp"
 #include "elrom/io/csv.hpp"
-#include "elrom/io/toml.hpp"
+#include "elrom/io/setting_value.hpp"
 
 namespace elrom::field::detail {
 
@@ -92,36 +92,26 @@ RawCase raw_case(const Json& node, const std::string& file, std::size_t i) {
   return raw;
 }
 
-RawCase raw_case(const toml::table& node, const std::string& file, std::size_t i) {
+RawCase raw_case(const io::SettingValue& node, const std::string& file, std::size_t i) {
   RawCase raw{.where = case_place(file, "", i)};
-  const auto name = node["case"].value_exact<std::string>();
-  if (!name) fail("missing text 'case'", raw.where);
-  raw.name = *name;
+  const auto number = [&](const io::SettingValue& value) {
+    const auto real = value.real();
+    if (!real) fail("'" + value.name() + "' is no number", raw.where);
+    return *real;
+  };
+  const auto* name = node.member("case");
+  if (name == nullptr || name->text() == nullptr) fail("missing text 'case'", raw.where);
+  raw.name = *name->text();
   raw.where = case_place(file, raw.name, i);
-  for (const auto& [key, value] : node) {
-    const std::string text(key.str());
-    if (text == "cases") fail("'case' and [[cases]] in one file", raw.where);
-    check_case_key(text, raw.where);
-    if (base::split_unit(text).name != "load") continue;
-    if (!value.is_number()) fail("'" + text + "' is no number", raw.where);
-    raw.load = {text, *value.value<double>()};
+  for (const auto& value : *node.table()) {
+    if (value.name() == "cases") fail("'case' and [[cases]] in one file", raw.where);
+    check_case_key(value.name(), raw.where);
+    if (base::split_unit(value.name()).name == "load") raw.load = {value.name(), number(value)};
   }
-  const auto* inputs = node["inputs"].as_table();
-  if (inputs == nullptr) fail("missing table 'inputs'", raw.where);
-  for (const auto& [key, value] : *inputs) {
-    if (!value.is_number()) fail("'" + std::string(key.str()) + "' is no number", raw.where);
-    raw.inputs.emplace_back(std::string(key.str()), *value.value<double>());
-  }
+  const auto* inputs = node.member("inputs");
+  if (inputs == nullptr || inputs->table() == nullptr) fail("missing table 'inputs'", raw.where);
+  for (const auto& value : *inputs->table()) raw.inputs.emplace_back(value.name(), number(value));
   return raw;
-}
-
-toml::table parse_toml(const std::string& text, const std::string& where) {
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    fail(std::string("not TOML (") + std::string(error.description()) + ")",
-         where + ":" + std::to_string(error.source().begin.line));
-  }
 }
 
 }  // namespace
@@ -143,16 +133,16 @@ std::vector<CaseInputs> read_cases_json(const std::filesystem::path& path, const
 
 std::vector<CaseInputs> read_cases_toml(const std::filesystem::path& path, const InputSchema& schema) {
   const auto file = path.string();
-  const auto root = parse_toml(io::read_small_text(path), file);
-  if (!root.contains("cases")) return {resolve(raw_case(root, file, 0), schema)};
-  const auto* list = root["cases"].as_array();
-  if (list == nullptr || root.size() != 1)
+  const auto root = io::parse_settings(io::read_small_text(path), file, io::SettingsFault::input);
+  const auto* listed = root.member("cases");
+  if (listed == nullptr) return {resolve(raw_case(root, file, 0), schema)};
+  const auto* list = listed->list();
+  if (list == nullptr || root.table()->size() != 1)
     fail("'cases' is no list of tables alone in its file", file, "[[cases]]");
   std::vector<CaseInputs> cases;
   for (std::size_t i = 0; i < list->size(); ++i) {
-    const auto* table = (*list)[i].as_table();
-    if (table == nullptr) fail("a case that is no table", case_place(file, "", i));
-    cases.push_back(resolve(raw_case(*table, file, i), schema));
+    if ((*list)[i].table() == nullptr) fail("a case that is no table", case_place(file, "", i));
+    cases.push_back(resolve(raw_case((*list)[i], file, i), schema));
   }
   return cases;
 }

@@ -10,7 +10,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
 #include "elrom/base/units.hpp"
-#include "elrom/io/toml.hpp"
+#include "toml.hpp"
 
 namespace elrom::io {
 
