@@ -69,12 +69,53 @@ std::string series_row(const Simulation& simulation) {
   return joined(row);
 }
 
-constexpr const char* section_heading =
-    "time [s],x [m],y [m],z [m],number,mass [kg],volume_fraction,velocity_x [m/s],velocity_y [m/s],velocity_z [m/s]\n";
+std::string section_heading(const Simulation& simulation) {
+  return std::string(
+             "time [s],x [m],y [m],z [m],number,mass [kg],volume_fraction,velocity_x [m/s],velocity_y "
+             "[m/s],velocity_z [m/s]") +
+         (simulation.flow() != nullptr ? ",gas_pressure [Pa]" : "") + "\n";
+}
 
 struct CellSums {
   double number = 0, mass = 0, volume = 0;
   Vec momentum;
+  double gas_volume = 0, pressure = 0;  // pressure times volume
+};
+
+/// The cells of a section, x fastest.
+class SectionCells {
+ public:
+  explicit SectionCells(const SectionSettings& section) : low_(section.low) {
+    const Vec size = section.high - section.low;
+    const std::array<double, 3> sizes{size.x, size.y, size.z};
+    for (std::size_t a = 0; a < 3; ++a) {
+      count_[a] = static_cast<std::size_t>(section.cells[a]);
+      step_[a] = sizes[a] / static_cast<double>(count_[a]);
+    }
+  }
+  [[nodiscard]] std::size_t size() const { return count_[0] * count_[1] * count_[2]; }
+  [[nodiscard]] double volume() const { return step_[0] * step_[1] * step_[2]; }
+  /// Of a place; none outside.
+  [[nodiscard]] std::optional<std::size_t> find(const Vec& place) const {
+    const Vec at = place - low_;
+    const std::array<double, 3> along{at.x / step_[0], at.y / step_[1], at.z / step_[2]};
+    for (std::size_t a = 0; a < 3; ++a)
+      if (!(along[a] >= 0 && along[a] < static_cast<double>(count_[a]))) return {};
+    return static_cast<std::size_t>(along[0]) +
+           count_[0] * (static_cast<std::size_t>(along[1]) + count_[1] * static_cast<std::size_t>(along[2]));
+  }
+  [[nodiscard]] Vec centre(std::size_t cell) const {
+    const auto along = [&](std::size_t index, std::size_t a) {
+      return (static_cast<double>(index) + 0.5) * step_[a];
+    };
+    return low_ + Vec{along(cell % count_[0], 0), along(cell / count_[0] % count_[1], 1),
+                      along(cell / count_[0] / count_[1], 2)};
+  }
+
+ private:
+  Vec low_;
+  std::array<std::size_t, 3> count_{};
+  std::array<double, 3> step_{};
 };
 
 // A text of a checkpoint that grows with the run: as a tensor, since a header is short.
@@ -89,42 +130,38 @@ std::string read_text(const io::TensorFile& file, const std::string& name) {
   return {bytes.begin(), bytes.end()};
 }
 
-// By where the centres are.
-std::string section_rows(const SectionSettings& section, const State& state, const Domain& domain) {
+// By where the centres are: of the spheres, and of the gas's cells.
+std::string section_rows(const SectionSettings& section, const Simulation& simulation) {
+  const auto& state = simulation.state();
   const auto& p = state.particles;
-  const std::array<std::size_t, 3> n{static_cast<std::size_t>(section.cells[0]),
-                                     static_cast<std::size_t>(section.cells[1]),
-                                     static_cast<std::size_t>(section.cells[2])};
-  const Vec size = section.high - section.low;
-  const std::array<double, 3> step{size.x / static_cast<double>(n[0]), size.y / static_cast<double>(n[1]),
-                                   size.z / static_cast<double>(n[2])};
-  std::vector<CellSums> cells(n[0] * n[1] * n[2]);
+  const SectionCells places(section);
+  std::vector<CellSums> cells(places.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Vec at = domain.wrapped(get(p.place, i)) - section.low;
-    const std::array<double, 3> along{at.x / step[0], at.y / step[1], at.z / step[2]};
-    bool inside = true;
-    for (std::size_t a = 0; a < 3; ++a)
-      inside = inside && along[a] >= 0 && along[a] < static_cast<double>(n[a]);
-    if (!inside) continue;
-    auto& cell =
-        cells[static_cast<std::size_t>(along[0]) +
-              n[0] * (static_cast<std::size_t>(along[1]) + n[1] * static_cast<std::size_t>(along[2]))];
+    const auto at = places.find(simulation.domain().wrapped(get(p.place, i)));
+    if (!at) continue;
+    auto& cell = cells[*at];
     ++cell.number;
     cell.mass += p.mass[i];
     cell.volume += p.mass[i] / p.density[i];
     cell.momentum += p.mass[i] * get(p.velocity, i);
   }
+  const auto* flow = simulation.flow();
+  for (std::size_t c = 0; flow != nullptr && c < flow->grid().size(); ++c) {
+    const auto at = flow->grid().is_open(c) ? places.find(flow->grid().centre(c)) : std::nullopt;
+    if (!at) continue;
+    cells[*at].gas_volume += flow->grid().space(c);
+    cells[*at].pressure += flow->grid().space(c) * flow->pressure()[c];
+  }
   std::string text;
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const auto& c = cells[k];
-    const auto centre = [&](std::size_t index, std::size_t a) {
-      return (static_cast<double>(index) + 0.5) * step[a];
-    };
-    const Vec place =
-        section.low + Vec{centre(k % n[0], 0), centre(k / n[0] % n[1], 1), centre(k / n[0] / n[1], 2)};
+    const Vec place = places.centre(k);
     const Vec velocity = c.mass > 0 ? (1 / c.mass) * c.momentum : Vec{};
-    text += joined({state.time, place.x, place.y, place.z, c.number, c.mass,
-                    c.volume / (step[0] * step[1] * step[2]), velocity.x, velocity.y, velocity.z});
+    std::vector<double> row{
+        state.time, place.x,    place.y,   place.z, c.number, c.mass, c.volume / places.volume(),
+        velocity.x, velocity.y, velocity.z};
+    if (flow != nullptr) row.push_back(c.gas_volume > 0 ? c.pressure / c.gas_volume : 0);
+    text += joined(row);
   }
   return text;
 }
@@ -146,14 +183,14 @@ class Outputs {
  public:
   Outputs(const Simulation& simulation, path folder) : simulation_(simulation), folder_(std::move(folder)) {
     series_ = series_heading(simulation);
-    sections_.assign(simulation.settings().sections.size(), section_heading);
+    sections_.assign(simulation.settings().sections.size(), section_heading(simulation));
   }
 
   void add_rows() {
     series_ += series_row(simulation_);
     const auto& s = simulation_.settings();
     for (std::size_t k = 0; k < sections_.size(); ++k)
-      sections_[k] += section_rows(s.sections[k], simulation_.state(), simulation_.domain());
+      sections_[k] += section_rows(s.sections[k], simulation_);
     if (std::ranges::find(s.formats, "vtp") == s.formats.end()) return;
     const auto name = fmt::format("particles_{:012}.vtp", simulation_.state().step);
     write_vtp(folder_ / name, simulation_.state().particles, simulation_.domain());

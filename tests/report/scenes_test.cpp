@@ -22,7 +22,7 @@ struct FakeRun {
   double step = 1e-4, end = 1, seconds = 10, collisions = 100, resumed_from = 0;
   std::array<double, 2> fraction{0.1, 0.3}, velocity{1, 2};
   std::array<float, 12> places{0, 0, 0, 2, 0, 0, 0, 5, 0, 2, 5, 0};  // of two spheres each
-  bool has_section = true;
+  bool has_section = true, has_row = false;
   std::string gas = "none";
 };
 
@@ -69,6 +69,18 @@ std::string picture_of(const FakeRun& run) {
       offset, data);
 }
 
+// Solids that fall in the outermost two of four cells.
+std::string row_across() {
+  std::string text =
+      "time [s],x [m],y [m],z [m],number,mass [kg],volume_fraction,velocity_x [m/s],velocity_y [m/s],velocity_z "
+      "[m/s],gas_pressure [Pa]\n";
+  for (const double time : {0.5, 1.0})
+    for (int k = 0; k < 4; ++k)
+      text += fmt::format("{},{},0,0.5,1,1,{},0,0,{},{}\n", time, k, k == 0 ? 0.3 : 0.1,
+                          k % 3 == 0 ? -0.2 : 0.4, 100 * time + k);
+  return text;
+}
+
 class Scenes : public testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const FakeRun& run) const {
@@ -83,6 +95,7 @@ class Scenes : public testing::Test {
                     "{},2,1,{},3,1,0,1,0,1\n",
                     run.end, run.collisions));
     if (run.has_section) put("section_s.csv", section_of(run));
+    if (run.has_row) put("section_row.csv", row_across());
     put("scene.toml",
         fmt::format("[scene]\nname = \"two\"\ntime_step = {}\n[gas]\nmodel = \"{}\"\n", run.step, run.gas));
     put("particles.pvd",
@@ -107,6 +120,18 @@ TEST_F(Scenes, ErrorIsHalfOfFractionsAndHalfOfFluxesAgainstDemByTheShortestStep)
   EXPECT_NEAR(made.runs[2].collision_error.value(), -0.1, 1e-12);
   EXPECT_THAT(headline(made), HasSubstr("Nearest to DEM on \"two\" is helscm, 100 us"));
   EXPECT_THAT(headline(made), HasSubstr("10.0 % fewer"));
+}
+
+TEST_F(Scenes, RowsAcrossTellWhereSolidsFallAndSectionsTheGasPressure) {
+  const auto made = scene_report({.folders = {write("d", {.has_row = true})}});
+  EXPECT_THAT(terminal_table(made), HasSubstr("ends    middle\n"));
+  EXPECT_THAT(terminal_table(made), testing::ContainsRegex("dem, 100 us +row +-0\\.200 +0\\.400\n"));
+  const auto sections = nlohmann::json::parse(to_json(made)).at("runs")[0].at("sections");
+  ASSERT_EQ(sections.size(), 2u);
+  EXPECT_EQ(sections[0].at("pressure_pa"), (std::vector<double>{75, 76, 77, 78}));
+  EXPECT_FALSE(sections[1].contains("pressure_pa"));
+  EXPECT_THAT(html_page(made), HasSubstr("Pressure of the gas"));
+  EXPECT_THAT(terminal_table(scene_report({.folders = {write("o", {})}})), Not(HasSubstr("they fall")));
 }
 
 TEST_F(Scenes, FrontIsWhatNoOtherBeatsInErrorAndTime) {

@@ -1,6 +1,11 @@
 // Gas and spheres together: momentum to rounding, beds that weigh what the pressure falls, hard cases.
+#include "elrom/base/log.hpp"
+#include "elrom/base/text.hpp"
+#include "elrom/io/csv.hpp"
+#include "elrom/scene/scene_run.hpp"
 #include "elrom/scene/simulation.hpp"
 #include "spheres_for_tests.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace elrom::scene {
 namespace {
@@ -76,6 +81,28 @@ TEST(SceneCoupledGas, FluidisedBedHangsOnThePressure) {
   EXPECT_EQ(mass_of(simulation.state().particles), mass);
   EXPECT_LT(simulation.flow()->divergence(), 1e-8);
   EXPECT_NEAR(simulation.flow()->flow_in(), 0.2 * 1e-4, 1e-15);
+}
+
+// Eight planes of half a layer of cells each: a plane has the pressure of the layer's sixteen cells if their
+// centres lie in it, and none otherwise.
+TEST(SceneCoupledGas, SectionsHaveTheMeanPressureOfTheCellsInThem) {
+  const test::TemporaryFolder folder;
+  auto settings = bed("0.2", "hel", "800", "0.003");
+  settings.sections = {{.name = "planes", .low = {0, 0, 0}, .high = {0.01, 0.01, 0.01}, .cells = {1, 1, 8}}};
+  Simulation simulation(settings, 1);
+  run(simulation, folder / "o", silent_log(), {});
+
+  const auto table = io::read_csv(folder / "o" / "section_planes.csv");
+  ASSERT_EQ(table.headings.back(), "gas_pressure [Pa]");
+  const auto& pressure = simulation.flow()->pressure();
+  for (std::size_t plane = 0; plane < 8; ++plane) {
+    const auto& row = table.rows[table.rows.size() - 8 + plane];
+    double mean = 0;
+    if (plane % 2 == 1)  // centres are at 1.25 mm, the border between two planes, and count as above it
+      for (std::size_t c = 0; c < 16; ++c) mean += pressure[plane / 2 * 16 + c] / 16;
+    EXPECT_NEAR(base::to_double(row.back()).value(), mean, 1e-9 * std::abs(pressure[0])) << plane;
+  }
+  EXPECT_GT(pressure[0], 0);
 }
 
 TEST(SceneCoupledGas, BedBelowFluidisationCarriesOnlyWhatErgunSays) {

@@ -82,7 +82,13 @@ SceneSection read_section(const fs::path& path, double from) {
     for (std::size_t row = 0; row < time.size(); ++row)
       if (time[row] >= from * (1 - 1e-9)) section.flux[a][row % n_cells] += fraction[row] * velocity[row];
   }
-  for (auto* sums : {&section.fraction, &section.flux[0], &section.flux[1], &section.flux[2]})
+  if (const auto* pressure = columns.find("gas_pressure [Pa]")) {
+    section.pressure.assign(n_cells, 0);
+    for (std::size_t row = 0; row < time.size(); ++row)
+      if (time[row] >= from * (1 - 1e-9)) section.pressure[row % n_cells] += (*pressure)[row];
+  }
+  for (auto* sums :
+       {&section.fraction, &section.flux[0], &section.flux[1], &section.flux[2], &section.pressure})
     for (double& sum : *sums) sum /= std::max(1.0, n_outputs);
   return section;
 }

@@ -48,6 +48,7 @@ Plane plane_of(const SceneSection& section) {
 struct Flat {
   std::vector<double> fraction;                      // (along, across), across fastest
   std::array<std::vector<double>, 3> velocity = {};  // NaN where nothing is
+  std::vector<double> pressure = {};                 // empty without a coupled gas
 };
 
 Flat flattened(const SceneSection& section, const Plane& plane) {
@@ -57,12 +58,14 @@ Flat flattened(const SceneSection& section, const Plane& plane) {
   const double depth = static_cast<double>(section.fraction.size()) / static_cast<double>(n);
   Flat flat{.fraction = std::vector<double>(n)};
   flat.velocity.fill(std::vector<double>(n));
+  if (!section.pressure.empty()) flat.pressure.assign(n, 0);
   for (std::size_t k = 0; k < section.fraction.size(); ++k) {
     const std::array<std::size_t, 3> index{k % c[0].size(), k / c[0].size() % c[1].size(),
                                            k / c[0].size() / c[1].size()};
     const auto to = index[plane.along] * n_across + index[plane.across];
     flat.fraction[to] += section.fraction[k] / depth;
     for (std::size_t a = 0; a < 3; ++a) flat.velocity[a][to] += section.flux[a][k] / depth;
+    if (!section.pressure.empty()) flat.pressure[to] += section.pressure[k] / depth;
   }
   for (auto& component : flat.velocity)
     for (std::size_t k = 0; k < n; ++k)
@@ -94,18 +97,21 @@ Compared compared(const SceneReport& report, const SceneSection& section) {
 
 struct Quantity {
   std::string caption, label;
-  std::size_t component = 3;  // 3: the fraction
+  std::size_t component = 3;  // 3: the fraction; 4: the pressure
   [[nodiscard]] const std::vector<double>& of(const Flat& flat) const {
-    return component == 3 ? flat.fraction : flat.velocity[component];
+    return component == 3 ? flat.fraction : component == 4 ? flat.pressure : flat.velocity[component];
   }
 };
 
 std::vector<Quantity> quantities_of(const Compared& at) {
   std::vector<Quantity> quantities{{"Volume fraction", "fraction", 3}};
-  for (const auto a : {at.plane.along, at.plane.across})
-    if (at.section->centres[a].size() > 1)
+  // Across a height, too, solids rise and fall.
+  for (std::size_t a = 0; a < 3; ++a)
+    if (a == 2 || ((a == at.plane.along || a == at.plane.across) && at.section->centres[a].size() > 1))
       quantities.push_back({fmt::format("Velocity of the solids along {}", axis_names[a]),
                             fmt::format("{}-velocity [m/s]", axis_names[a]), a});
+  if (std::ranges::all_of(at.runs, [](const auto& run) { return !run || !run->pressure.empty(); }))
+    quantities.push_back({"Pressure of the gas", "pressure [Pa]", 4});
   return quantities;
 }
 

@@ -56,6 +56,40 @@ const SceneRunReport* winner_over(const SceneReport& report, const SceneRunRepor
   return nullptr;
 }
 
+// A row of cells across a height: it tells whether solids fall along walls and rise between them.
+bool is_across(const SceneSection& section) {
+  const auto n = [&](std::size_t a) { return section.centres[a].size(); };
+  return n(2) == 1 && std::min(n(0), n(1)) == 1 && std::max(n(0), n(1)) >= 4;
+}
+
+/// Velocity of the solids along z in the outermost cells of a row and in its middle, m/s; NaN without solids.
+struct EndsAndMiddle {
+  double ends, middle;
+};
+
+EndsAndMiddle vertical_velocity(const SceneSection& row) {
+  const auto of = [&](std::size_t a, std::size_t b) {
+    const double fraction = row.fraction[a] + row.fraction[b];
+    return fraction > 0 ? (row.flux[2][a] + row.flux[2][b]) / fraction : std::nan("");
+  };
+  const auto n = row.fraction.size();
+  return {of(0, n - 1), of((n - 1) / 2, n / 2)};
+}
+
+std::string across_table(const SceneReport& report) {
+  std::string text;
+  for (const auto& run : report.runs)
+    for (const auto& row : run.files.sections) {
+      if (!is_across(row)) continue;
+      if (text.empty())
+        text = "\n  Velocity of the solids along z [m/s]; below zero they fall\n" +
+               fmt::format("  {:<28}  {:<24}  {:>8}  {:>8}\n", "run", "section", "ends", "middle");
+      const auto [ends, middle] = vertical_velocity(row);
+      text += fmt::format("  {:<28}  {:<24}  {:>8.3f}  {:>8.3f}\n", run.name, row.name, ends, middle);
+    }
+  return text;
+}
+
 Json numbers(const std::vector<double>& values) {
   Json list = Json::array();
   for (const double value : values) list.push_back(number(value));
@@ -63,14 +97,16 @@ Json numbers(const std::vector<double>& values) {
 }
 
 Json json_of(const SceneSection& section) {
-  return {{"name", section.name},
-          {"x_m", section.centres[0]},
-          {"y_m", section.centres[1]},
-          {"z_m", section.centres[2]},
-          {"volume_fraction", numbers(section.fraction)},
-          {"flux_x_m_per_s", numbers(section.flux[0])},
-          {"flux_y_m_per_s", numbers(section.flux[1])},
-          {"flux_z_m_per_s", numbers(section.flux[2])}};
+  Json node{{"name", section.name},
+            {"x_m", section.centres[0]},
+            {"y_m", section.centres[1]},
+            {"z_m", section.centres[2]},
+            {"volume_fraction", numbers(section.fraction)},
+            {"flux_x_m_per_s", numbers(section.flux[0])},
+            {"flux_y_m_per_s", numbers(section.flux[1])},
+            {"flux_z_m_per_s", numbers(section.flux[2])}};
+  if (!section.pressure.empty()) node["pressure_pa"] = numbers(section.pressure);
+  return node;
 }
 
 Json json_of(const SceneRunReport& run) {
@@ -198,7 +234,7 @@ std::string terminal_table(const SceneReport& report) {
                         run.collision_error ? signed_percent(*run.collision_error) : "-", run.files.wall_hits,
                         time_or_part(run.files.seconds), note.empty() ? "" : "  " + note);
   }
-  text += "\n  " + headline(report) + "\n";
+  text += across_table(report) + "\n  " + headline(report) + "\n";
   if (report.runs.size() == 1) return text;
   return text + "  " + cost_sentence(report) + "\n  " + error_meaning(report) + "\n";
 }

@@ -29,6 +29,7 @@ struct SceneSection {
   std::array<std::vector<double>, 3> centres;  ///< of the cells along x, y, z, ascending, m
   std::vector<double> fraction;                ///< of the volume, (cells)
   std::array<std::vector<double>, 3> flux;     ///< fraction times velocity, m/s
+  std::vector<double> pressure;                ///< of a coupled gas, Pa; else empty
 };
 
 /// Where spheres or parcels are at the end.
