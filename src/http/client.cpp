@@ -35,13 +35,11 @@ struct Client::Impl {
   ClientOptions options;
   asio::io_context io{1};
   std::unique_ptr<asio::ssl::context> tls;
-  std::unique_ptr<PlainStream> plain;
-  std::unique_ptr<SecureStream> secure;
+  std::optional<Stream> stream;
   beast::flat_buffer buffer;
 
   void disconnect() {
-    plain.reset();
-    secure.reset();
+    stream.reset();
     buffer.clear();
   }
 
@@ -50,8 +48,6 @@ struct Client::Impl {
     throw SystemError(Problem{.what = what, .where = url.host + ":" + url.port, .found = fault.message()});
   }
 
-  [[nodiscard]] PlainStream& tcp() { return secure ? beast::get_lowest_layer(*secure) : *plain; }
-
   /// Runs what was begun to its end.
   void run(const char* what, const beast::error_code& fault) {
     io.restart();
@@ -59,33 +55,21 @@ struct Client::Impl {
     if (fault) fail(what, fault);
   }
 
-  template <class Work>
-  void with_stream(const Work& work) {
-    if (secure)
-      work(*secure);
-    else
-      work(*plain);
-  }
-
   void connect() {
     beast::error_code fault;
     asio::ip::tcp::resolver resolver(io);
     const auto places = resolver.resolve(url.host, url.port, fault);
     if (fault) fail("cannot find the server", fault);
-    if (url.secure) {
-      make_tls();
-      secure = std::make_unique<SecureStream>(io, *tls);
-    } else {
-      plain = std::make_unique<PlainStream>(io);
-    }
-    tcp().expires_after(milliseconds(options.timeout_seconds));
-    tcp().async_connect(places, [&](beast::error_code got, const auto&) { fault = got; });
+    if (url.secure) make_tls();
+    stream.emplace(io, tls.get());
+    stream->tcp().expires_after(milliseconds(options.timeout_seconds));
+    stream->tcp().async_connect(places, [&](beast::error_code got, const auto&) { fault = got; });
     run("cannot reach the server", fault);
     expect_another();
-    tcp().socket().set_option(asio::ip::tcp::no_delay(true), fault);
-    if (!secure) return;
-    SSL_set_tlsext_host_name(secure->native_handle(), url.host.c_str());
-    secure->async_handshake(asio::ssl::stream_base::client, [&](beast::error_code got) { fault = got; });
+    stream->tcp().socket().set_option(Tcp::no_delay(true), fault);
+    if (!stream->is_secure()) return;
+    SSL_set_tlsext_host_name(stream->tls(), url.host.c_str());
+    stream->async_handshake(asio::ssl::stream_base::client, [&](beast::error_code got) { fault = got; });
     run("no trust in the server's certificate", fault);
   }
 
@@ -93,7 +77,7 @@ struct Client::Impl {
   /// meet himself; the server could then not come back to it.
   void expect_another() {
     beast::error_code fault;
-    auto& socket = tcp().socket();
+    auto& socket = stream->tcp().socket();
     if (socket.local_endpoint(fault) == socket.remote_endpoint(fault))
       fail("cannot reach the server", asio::error::connection_refused);
   }
@@ -112,7 +96,7 @@ struct Client::Impl {
 
   /// Whether the server closed the connection since the last answer.
   [[nodiscard]] bool is_stale() {
-    auto& socket = tcp().socket();
+    auto& socket = stream->tcp().socket();
     beast::error_code fault;
     socket.non_blocking(true, fault);
     char byte = 0;
@@ -121,8 +105,8 @@ struct Client::Impl {
   }
 
   Response send(const Request& request) {
-    if ((plain || secure) && is_stale()) disconnect();
-    if (!plain && !secure) connect();
+    if (stream && is_stale()) disconnect();
+    if (!stream) connect();
     write(request);
     return read(request.method == "HEAD");
   }
@@ -137,10 +121,8 @@ struct Client::Impl {
     message.body() = request.body;
     message.prepare_payload();
     beast::error_code fault;
-    tcp().expires_after(milliseconds(options.timeout_seconds));
-    with_stream([&](auto& stream) {
-      beast::http::async_write(stream, message, [&](beast::error_code got, std::size_t) { fault = got; });
-    });
+    stream->tcp().expires_after(milliseconds(options.timeout_seconds));
+    beast::http::async_write(*stream, message, [&](beast::error_code got, std::size_t) { fault = got; });
     run("the request could not be sent", fault);
   }
 
@@ -149,10 +131,8 @@ struct Client::Impl {
     parser.body_limit(options.answer_bytes);
     parser.skip(head_only);
     beast::error_code fault;
-    with_stream([&](auto& stream) {
-      beast::http::async_read(stream, buffer, parser,
-                              [&](beast::error_code got, std::size_t) { fault = got; });
-    });
+    beast::http::async_read(*stream, buffer, parser,
+                            [&](beast::error_code got, std::size_t) { fault = got; });
     run("no whole answer came", fault);
     auto& message = parser.get();
     Response response{.status = static_cast<int>(message.result_int()), .body = std::move(message.body())};

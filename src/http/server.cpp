@@ -59,7 +59,7 @@ struct Server::Impl {
   std::unique_ptr<asio::thread_pool> workers;
   Shared shared;
   std::map<std::string, std::size_t> by_address;
-  std::set<Connection*> connections;
+  std::set<Session*> connections;
   std::mutex mutex;
   std::condition_variable none_left;
   std::size_t n_connections = 0;  //!< guarded by the mutex; the rest belongs to the io thread
@@ -129,18 +129,15 @@ struct Server::Impl {
       return;  // closed with the socket
     socket.set_option(Tcp::no_delay(true), fault);
     by_address[client] = of_client + 1;
-    const auto left = [this, client](Connection* gone) { forget(gone, client); };
-    std::shared_ptr<Connection> connection;
-    if (tls)
-      connection = std::make_shared<Session<SecureStream>>(shared, client, left, std::move(socket), *tls);
-    else
-      connection = std::make_shared<Session<PlainStream>>(shared, client, left, std::move(socket));
+    const auto left = [this, client](Session* gone) { forget(gone, client); };
+    const auto connection =
+        std::make_shared<Session>(shared, client, left, std::move(socket), tls ? &*tls : nullptr);
     connections.insert(connection.get());
     count();
     connection->begin();
   }
 
-  void forget(Connection* gone, const std::string& client) {
+  void forget(Session* gone, const std::string& client) {
     connections.erase(gone);
     const auto found = by_address.find(client);
     if (found != by_address.end() && --found->second == 0) by_address.erase(found);

@@ -12,7 +12,6 @@
 namespace elrom::http {
 
 using Clock = std::chrono::steady_clock;
-using Tcp = asio::ip::tcp;
 
 inline double seconds_now() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
@@ -39,14 +38,6 @@ class Budget {
   std::atomic<std::size_t> left_;
 };
 
-/// One connection. Everything but the handler's work happens on the thread of the io_context.
-class Connection : public std::enable_shared_from_this<Connection> {
- public:
-  virtual ~Connection() = default;
-  virtual void begin() = 0;
-  virtual void close_if_idle() = 0;
-};
-
 /// What all connections share.
 struct Shared {
   const ServerOptions& options;
@@ -64,40 +55,37 @@ struct Refused {
   int retry_after_s = 0;
 };
 
-template <class Stream>
-class Session final : public Connection {
-  static constexpr bool secure = std::is_same_v<Stream, SecureStream>;
-
+/// One connection. Everything but the handler's work happens on the thread of the io_context.
+class Session : public std::enable_shared_from_this<Session> {
  public:
-  /// @param left called when the connection is gone
-  template <class... Parts>
-  Session(Shared& shared, std::string client, std::function<void(Connection*)> left, Parts&&... parts)
+  /// @param left called when the connection is gone @param tls null: plain
+  Session(Shared& shared, std::string client, std::function<void(Session*)> left, Tcp::socket socket,
+          asio::ssl::context* tls)
       : shared_(shared),
         client_(std::move(client)),
         left_(std::move(left)),
-        stream_(std::forward<Parts>(parts)...),
+        stream_(std::move(socket), tls),
         buffer_(limits().header_bytes) {}
-  ~Session() override { left_(this); }
+  ~Session() { left_(this); }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
-  void begin() override {
-    if constexpr (secure) {
-      tcp().expires_after(milliseconds(limits().header_seconds));
-      stream_.async_handshake(asio::ssl::stream_base::server, [self = self()](beast::error_code fault) {
-        if (!fault) self->await_request(self->limits().header_seconds);
-      });
-    } else {
-      await_request(limits().header_seconds);
-    }
+  void begin() {
+    if (!stream_.is_secure()) return await_request(limits().header_seconds);
+    tcp().expires_after(milliseconds(limits().header_seconds));
+    stream_.async_handshake(asio::ssl::stream_base::server, [self = self()](beast::error_code fault) {
+      if (!fault) self->await_request(self->limits().header_seconds);
+    });
   }
 
-  void close_if_idle() override {
+  void close_if_idle() {
     if (idle_) tcp().close();
   }
 
  private:
   [[nodiscard]] const Limits& limits() const { return shared_.options.limits; }
-  [[nodiscard]] auto self() { return std::static_pointer_cast<Session>(shared_from_this()); }
-  [[nodiscard]] auto& tcp() { return beast::get_lowest_layer(stream_); }
+  [[nodiscard]] std::shared_ptr<Session> self() { return shared_from_this(); }
+  [[nodiscard]] beast::tcp_stream& tcp() { return stream_.tcp(); }
 
   void await_request(double seconds) {
     if (shared_.stopping) return close();
@@ -264,13 +252,11 @@ class Session final : public Connection {
   void close() {
     constexpr double patience_s = 2;
     tcp().expires_after(milliseconds(patience_s));
-    if constexpr (secure) {
-      stream_.async_shutdown([self = self()](beast::error_code) { self->tcp().close(); });
-    } else {
-      beast::error_code ignored;
-      tcp().socket().shutdown(Tcp::socket::shutdown_send, ignored);
-      drain();
-    }
+    if (stream_.is_secure())
+      return stream_.async_shutdown([self = self()](beast::error_code) { self->tcp().close(); });
+    beast::error_code ignored;
+    tcp().socket().shutdown(Tcp::socket::shutdown_send, ignored);
+    drain();
   }
 
   void drain() {
@@ -283,7 +269,7 @@ class Session final : public Connection {
 
   Shared& shared_;
   std::string client_;
-  std::function<void(Connection*)> left_;
+  std::function<void(Session*)> left_;
   Stream stream_;
   beast::flat_buffer buffer_;
   std::optional<beast::http::request_parser<beast::http::string_body>> parser_;
