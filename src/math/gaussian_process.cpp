@@ -93,8 +93,9 @@ GpParameters fit_gp(const MatrixD& inputs, const MatrixXd& targets, const GpFitO
   check(!options.start_noises.empty(), "Gaussian process: at least one noise to start from");
   const Eigen::Index p = inputs.cols(), n_lengths = options.isotropic ? 1 : p;
   VectorXd lower(n_lengths + 2), upper(n_lengths + 2), start(n_lengths + 2), all(p + 2), slopes;
-  lower << VectorXd::Constant(n_lengths, std::log(options.lowest_length)), -5, std::log(options.lowest_noise);
-  upper << VectorXd::Constant(n_lengths, std::log(options.highest_length)), 5,
+  lower << VectorXd::Constant(n_lengths, std::log(options.lowest_length)), std::log(options.lowest_signal),
+      std::log(options.lowest_noise);
+  upper << VectorXd::Constant(n_lengths, std::log(options.highest_length)), std::log(options.highest_signal),
       std::log(options.highest_noise);
   const auto spread = [&](const VectorXd& theta) -> const VectorXd& {
     for (Eigen::Index j = 0; j < p; ++j) all[j] = theta[std::min(j, n_lengths - 1)];

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elrom/base/error.hpp"
+#include "elrom/math/gaussian_process.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "support/changed_members.hpp"
@@ -102,6 +103,25 @@ TEST(Peers, OnASmoothFieldWithoutNoiseTheyChooseModesAndHardlyAnySmoothing) {
   for (const char* name : {"pod_gp", "pod_gp_per_mode"})
     EXPECT_LT(test::unseen_error(*make_peer(name), data), 0.03) << name;
   EXPECT_LT(test::unseen_error(*make_peer("pod_rbf"), data), 0.13) << "which has no length scale";
+}
+
+/// A plane with waves of half a hundredth of it: by any start with noise worth the name they are noise.
+TEST(Peers, StartsOfTheirProcessesFindFineStructure) {
+  MatrixD x(80, 2);
+  Eigen::MatrixXd y(80, 1);
+  for (int i = 0; i < 80; ++i) {
+    x.row(i) << 3.46 * std::fmod(0.7548776662 * i, 1.0) - 1.73,
+        3.46 * std::fmod(0.5698402910 * i, 1.0) - 1.73;
+    y(i, 0) = x(i, 0) + 0.005 * std::sin(3 * x(i, 0)) * std::cos(3 * x(i, 1));
+  }
+
+  const auto found = math::fit_gp(x, y,
+                                  {.start_lengths = PeerOptions{}.gp_start_lengths,
+                                   .start_noises = PeerOptions{}.gp_start_noises,
+                                   .max_iterations = PeerOptions{}.gp_iterations});
+
+  EXPECT_LT(found.noise_variance, 1e-7);
+  EXPECT_GT(found.signal_variance, 20);
 }
 
 TEST(Peers, OnPureNoiseTheyKeepToTheMean) {

@@ -332,18 +332,13 @@ class GpPerMode final : public PodPeer {
                           .start_noises = options().gp_start_noises,
                           .max_iterations = options().gp_iterations};
     math::GpParameters best = math::fit_gp(inputs, targets, gp);
-    double least = information(inputs, targets, best, 3);
-    const auto isotropic = best;
+    const double least = information(inputs, targets, best, 3);
     gp.isotropic = false;
-    for (const bool near : {true, false}) {
-      gp.start_lengths = {near ? isotropic.length_scales[0] : options().gp_start_lengths.front()};
-      gp.start_noises = {near ? isotropic.noise_variance : options().gp_start_noises.front()};
-      math::GpParameters own = math::fit_gp(inputs, targets, gp);
-      const double found = information(inputs, targets, own, inputs.cols() + 2);
-      if (found >= least) continue;
-      least = found;
-      best = std::move(own);
-    }
+    const auto &lengths = options().gp_start_lengths, &noises = options().gp_start_noises;
+    gp.start_lengths = {best.length_scales[0], lengths.front(), lengths.back()};
+    gp.start_noises = {best.noise_variance, noises.front(), noises.back()};
+    math::GpParameters own = math::fit_gp(inputs, targets, gp);
+    if (information(inputs, targets, own, inputs.cols() + 2) < least) best = std::move(own);
     return {inputs, targets, std::move(best)};
   }
 

@@ -28,7 +28,9 @@ struct GpFitOptions {
   std::vector<double> start_noises{
       0.1};  ///< their noise variances; with fewer than starts, from the first again
   double lowest_length = 0.3, highest_length = 1e3;
-  double lowest_noise = 1e-6, highest_noise = 3;
+  /// Far above the targets' variance: of a smooth function only a piece of one wave is seen.
+  double lowest_signal = 1e-3, highest_signal = 1e5;
+  double lowest_noise = 1e-8, highest_noise = 3;
   int max_iterations = 100;
 };
 

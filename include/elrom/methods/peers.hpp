@@ -17,7 +17,7 @@
 //                     so. Covariance (Matern 3/2, Matern 5/2, Gaussian): the least error
 //   pod_gp_per_mode   length scales, signal and noise by likelihood, with one length scale for all inputs (of
 //                     `gp_start_lengths` the best) and with one each (from where that ended, and from the
-//                     first of them): of the three the least information criterion (Schwarz 1978).
+//                     first and the last of them): the least information criterion (Schwarz 1978).
 //                     Covariance, shared by all modes: the least error of the first `covariance_modes`. In
 //                     blocks of modes, until one gains nothing
 // pod_mlp, which needs a trainer, has a header of its own.
@@ -37,8 +37,11 @@ struct PeerOptions {
   int mode_block = 5;         ///< modes of pod_gp_per_mode that are tried at a time
   int covariance_modes = 4;   ///< a covariance is chosen by so many modes of pod_gp_per_mode
   int smoothing_decades = 8;  ///< RBF smoothing: 0, and from 10^-decades to 10^2 by factors of 10
-  std::vector<double> gp_start_lengths{5.0, 1.5};  ///< of the likelihood's search, in standard deviations
-  std::vector<double> gp_start_noises{0.1, 1e-3};  ///< one for each start
+  /// Of the searches, in standard deviations. The last start hardly leaves room for noise: beside the optimum
+  /// of a smooth mode there is another one that takes its fine structure for noise, and the way into it from
+  /// any noise worth the name.
+  std::vector<double> gp_start_lengths{5.0, 1.5, 5.0};
+  std::vector<double> gp_start_noises{0.1, 1e-3, 1e-6};  ///< one for each start
   int gp_iterations = 100;
 };
 
