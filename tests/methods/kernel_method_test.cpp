@@ -356,6 +356,28 @@ TEST(KernelMethod, ASmoothFieldGetsASmoothCovariance) {
   EXPECT_LT(smoother_of(*model).groups()[0].kernel.noise, 1e-4);
 }
 
+/// One strong mode that hardly has noise, and weak ones that are nearly all noise.
+field::FieldData strong_and_weak(const field::CaseSet& cases) {
+  field::FieldData data{&cases, {"pressure", "", "Pa"}, MatrixF(60, 40)};
+  base::Random random(base::Seed(9));
+  for (Eigen::Index i = 0; i < 60; ++i) {
+    for (Eigen::Index c = 0; c < 40; ++c)
+      data.values(i, c) =
+          static_cast<float>(10 * std::sin(2 * cases.inputs(i, 1)) +
+                             0.5 * std::cos(0.1 * c + 5 * cases.inputs(i, 1)) + 3 * random.normal());
+  }
+  return data;
+}
+
+TEST(KernelMethod, LeadingModesHaveANoiseOfTheirOwn) {
+  const InverseWorld world;
+  const field::FieldData data = strong_and_weak(world.cases);
+
+  const double common = test::unseen_error(*make_kernel_method({.own_modes = 0}), data);
+
+  EXPECT_LT(test::unseen_error(*make_kernel_method(), data), common);
+}
+
 TEST(KernelMethod, HardCasesStayFinite) {
   field::CaseSet cases = test::toy_cases(6);
   field::FieldData data = test::toy_field(cases);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <ranges>
 
 #include "derived_inputs.hpp"
 #include "elrom/base/error.hpp"
@@ -16,6 +18,7 @@
 #include "elrom/model/smoother_coefficients.hpp"
 #include "leave_one_out.hpp"
 #include "shrinkage.hpp"
+#include "smoother_modes.hpp"
 #include "symmetry_classes.hpp"
 
 namespace elrom::methods {
@@ -38,14 +41,12 @@ MatrixXd cross_gram(const MatrixF& a, const MatrixF& b) {
   return gram;
 }
 
-/// What one class of the field becomes: its modes, what predicts them, and the leave-one-out residuals.
+/// What one class of the field becomes: its modes and what predicts them.
 struct SymmetryPart {
-  model::SmootherCoefficients::Group group;
-  MatrixF modes;      // (n_modes, n_cells)
-  MatrixF residuals;  // (n_cases, n_cells)
+  std::vector<model::SmootherCoefficients::Group> groups;
+  MatrixF modes;  // (n_modes, n_cells)
   std::size_t i_class = 0;
-  double left_out_variance =
-      0;  // mean over cases of the latent variance when left out, in units of the signal
+  std::vector<double> left_out_variance;  // of each mode, mean over cases of the variance when left out
   [[nodiscard]] bool empty() const { return modes.rows() == 0; }
 };
 
@@ -55,35 +56,6 @@ struct Learned {
   MatrixF shrunk;     // the cases, every wavelength and cell as far as it is trusted, (n_cases, n_cells)
   MatrixF residuals;  // (n_cases, n_cells), leave-one-out
   bool predicts = false;
-};
-
-/// The smoother of one covariance on the training cases.
-struct Smoother {
-  MatrixXd covariance, precision, inverse_factor;  // K, (K + noise I)^-1, L^-1
-
-  Smoother(const model::SmootherKernel& kernel, const MatrixD& z) : covariance(kernel.matrix(z, z)) {
-    MatrixXd k = covariance;
-    k.diagonal().array() += kernel.noise;
-    const math::Cholesky factor(k);
-    if (!factor.succeeded()) throw NumericalError("kernel smoother: the covariance is not positive definite");
-    precision = factor.inverse();
-    inverse_factor = factor.inverse_factor();
-  }
-
-  /// Rows predict each case from the others: I - diag(P)^-1 P.
-  [[nodiscard]] MatrixXd leave_one_out() const {
-    MatrixXd operation = -(precision.diagonal().cwiseInverse().asDiagonal() * precision);
-    operation.diagonal().array() += 1;
-    return operation;
-  }
-  /// The same of departures from the mean of the others: each of them loses that mean.
-  [[nodiscard]] MatrixXd leave_one_out_about_mean() const {
-    MatrixXd operation = leave_one_out();
-    const VectorXd mean = operation.rowwise().sum() / static_cast<double>(operation.rows() - 1);
-    operation.colwise() -= mean;
-    operation.diagonal() += mean;
-    return operation;
-  }
 };
 
 struct Features {
@@ -158,7 +130,8 @@ struct FieldParts {
   [[nodiscard]] const model::SmootherKernel* earlier_kernel(std::size_t c) const {
     if (earlier == nullptr) return nullptr;
     const auto own = features.of_class(c);
-    for (const auto& group : earlier->groups()) {
+    // The last symmetric group has the field's own kernel.
+    for (const auto& group : std::views::reverse(earlier->groups())) {
       if (group.kernel.antisymmetric != (c > 0)) continue;
       const VectorXd& used = c > 0 ? group.kernel.imbalance : group.kernel.inverse_lengths;
       if ((used.array() > 0).count() == static_cast<Index>(own.size()) && (used(own).array() > 0).all())
@@ -245,46 +218,37 @@ class KernelMethod final : public Method {
   [[nodiscard]] Learned learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
                                             const model::SmootherKernel& symmetric,
                                             const field::FieldData& data, int n_threads) const;
-  [[nodiscard]] static SymmetryPart make_part(Learned learned, const MatrixD& z, std::size_t most_modes,
-                                              double may_drop);
+  /// @param may_drop energy that the modes left out may hold
+  [[nodiscard]] ModeLimits limits_of(std::size_t c, double may_drop) const {
+    const auto most = c == 0 ? options_.most_modes : std::max<std::size_t>(options_.most_modes / 4, 1);
+    return {most, options_.own_modes, may_drop};
+  }
   [[nodiscard]] MatrixF cross_predict_at_once(FieldParts field, const field::FieldData& data,
                                               const Folds& folds, const FitContext& context) const;
 
   KernelOptions options_;
 };
 
-/// Basis of what the smoother can say: the principal directions of the fitted (not the noisy) cases.
-/// @param may_drop energy, summed over cases and cells, that the left-out directions may hold
-SymmetryPart KernelMethod::make_part(Learned learned, const MatrixD& z, std::size_t most_modes,
-                                     double may_drop) {
-  SymmetryPart part;
-  part.group.kernel = std::move(learned.kernel);
-  const Smoother smoother(part.group.kernel, z);
+/// Modes with one kernel, and what the mean variance of each is over cases that are left out.
+void add_group(SymmetryPart& part, const model::SmootherKernel& kernel, const MatrixD& z,
+               const MatrixXd& targets) {
+  const Smoother smoother(kernel, z);
+  const MatrixD weights = smoother.precision * targets;
+  const VectorXd signal = targets.cwiseProduct(MatrixXd(weights)).colwise().mean().transpose().cwiseMax(0);
+  const double variance = std::max(0.0, smoother.precision.diagonal().cwiseInverse().mean() - kernel.noise);
+  for (const double one : signal) part.left_out_variance.push_back(one * variance);
+  part.groups.push_back({kernel, weights, signal, smoother.inverse_factor.cast<float>()});
+}
+
+SymmetryPart make_part(const Learned& learned, const MatrixD& z, const ModeLimits& limits, int n_threads) {
   const MatrixF& shrunk = learned.shrunk;
-  const MatrixXd gram = cross_gram(shrunk, shrunk);
-  const MatrixXd fitted = smoother.covariance * smoother.precision;  // H
-  const MatrixD fitted_gram = fitted * gram * fitted.transpose();
-  const math::SymmetricEigen eigen = math::symmetric_eigen(fitted_gram);
-  const VectorXd energies = eigen.values.reverse().cwiseMax(0);
-  const double total = energies.sum();
-  Index n = 0;
-  double left = total;
-  while (n < energies.size() && n < static_cast<Index>(most_modes) && energies[n] > 1e-13 * total &&
-         left > may_drop) {
-    left -= energies[n++];
-  }
-  const MatrixXd directions = eigen.vectors.rowwise().reverse().leftCols(n) *
-                              energies.head(n).cwiseSqrt().cwiseInverse().asDiagonal();
-  const MatrixXd basis = directions.transpose() * fitted;  // modes = basis * shrunk
+  const SmootherModes modes = modes_of(learned.kernel, z, cross_gram(shrunk, shrunk), limits, n_threads);
+  SymmetryPart part;
   const auto rows = math::all_rows(static_cast<std::size_t>(shrunk.rows()));
-  part.modes = math::combine_rows(basis, shrunk, rows, VectorXd::Zero(shrunk.cols()));
-  const MatrixXd coefficients = gram * basis.transpose();  // of the shrunk cases, (n_cases, n_modes)
-  part.group.weights = smoother.precision * coefficients;
-  part.group.signal =
-      coefficients.cwiseProduct(MatrixXd(part.group.weights)).colwise().mean().transpose().cwiseMax(0);
-  part.group.inverse_factor = smoother.inverse_factor.cast<float>();
-  part.left_out_variance =
-      std::max(0.0, smoother.precision.diagonal().cwiseInverse().mean() - part.group.kernel.noise);
+  part.modes = math::combine_rows(modes.basis, shrunk, rows, VectorXd::Zero(shrunk.cols()));
+  modes.each_group(learned.kernel, [&](const model::SmootherKernel& kernel, Index first, Index n) {
+    add_group(part, kernel, z, modes.targets.middleCols(first, n));
+  });
   return part;
 }
 
@@ -362,10 +326,9 @@ VectorXd residual_deviation(const MatrixF& residuals, const std::vector<Symmetry
     variance += residuals.row(i).transpose().cast<double>().cwiseAbs2();
   variance /= static_cast<double>(residuals.rows());
   for (const SymmetryPart& part : parts) {
-    for (Index m = 0; m < part.modes.rows(); ++m) {
+    for (Index m = 0; m < part.modes.rows(); ++m)
       variance -= part.modes.row(m).transpose().cast<double>().cwiseAbs2() *
-                  (part.group.signal[m] * part.left_out_variance);
-    }
+                  part.left_out_variance[static_cast<std::size_t>(m)];
   }
   return variance.cwiseMax(0).cwiseSqrt();
 }
@@ -410,8 +373,7 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
       residuals += learned.residuals;
     if (c == 0) may_drop = options_.dropped * math::sum_of_squares(residuals);
     if (!learned.predicts) return;
-    const auto most = c == 0 ? options_.most_modes : std::max<std::size_t>(options_.most_modes / 4, 1);
-    auto part = make_part(std::move(learned), field.features.z, most, may_drop);
+    auto part = make_part(learned, field.features.z, limits_of(c, may_drop), context.n_threads);
     part.i_class = c;
     if (c == 0 || !part.empty()) parts.push_back(std::move(part));
   });
@@ -429,30 +391,48 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
   for (const SymmetryClass& one : field.classes) signs.push_back(one.signs);
   const field::Mesh& mesh = data.cases->mesh;
   model::SymmetryFold fold(data.cases->mirrors, data.info.parity, signs, mesh.n_planes, mesh.n_columns);
-  for (SymmetryPart& part : parts) groups.push_back(std::move(part.group));
+  for (SymmetryPart& part : parts) std::ranges::move(part.groups, std::back_inserter(groups));
   auto coefficients = std::make_shared<model::SmootherCoefficients>(
       field.features.derived.map, field.features.scaler, field.features.z, std::move(groups));
   return model::make_pod_model("kernel", field.mean, modes, residual, mesh.n_columns, std::move(coefficients),
                                std::move(fold), std::move(class_of_mode));
 }
 
+/// Each column less its mean.
+MatrixXd about_mean_of_rows(MatrixXd values) {
+  values.rowwise() -= values.colwise().mean().eval();
+  return values;
+}
+
+/// Weights of the training cases in what their modes predict elsewhere. @param z_new (n, n_features) @return (n, n_cases)
+MatrixXd weights_of_cases(const SmootherModes& modes, const model::SmootherKernel& common, const MatrixD& z,
+                          const MatrixD& z_new) {
+  MatrixXd weights = MatrixXd::Zero(z_new.rows(), z.rows());
+  modes.each_group(common, [&](const model::SmootherKernel& kernel, Index first, Index n) {
+    const MatrixXd trained = Smoother(kernel, z).precision * modes.targets.middleCols(first, n);
+    weights += kernel.matrix(z_new, z) * trained * modes.basis.middleRows(first, n);
+  });
+  return weights;
+}
+
 /// Weights of the other folds' cases in the prediction of each case, 0 for those of its own fold: (n_cases,
-/// n_cases). @param about_mean the smoother works on departures from the mean of those cases
-MatrixXd weights_without_own_fold(const model::SmootherKernel& kernel, const MatrixD& z,
-                                  const std::vector<std::vector<Index>>& folds, bool about_mean) {
-  const MatrixXd covariance = kernel.matrix(z, z);
+/// n_cases).
+MatrixXd weights_without_own_fold(const Learned& learned, const MatrixD& z,
+                                  const std::vector<std::vector<Index>>& folds, const ModeLimits& limits,
+                                  int n_threads) {
+  const bool about_mean = !learned.kernel.antisymmetric;
+  const MatrixXd gram = cross_gram(learned.shrunk, learned.shrunk);
   MatrixXd weights = MatrixXd::Zero(z.rows(), z.rows());
   for (const auto& own : folds) {
     std::vector<Index> others;
     for (Index i = 0; i < z.rows(); ++i)
       if (!std::ranges::binary_search(own, i)) others.push_back(i);
-    MatrixXd k = covariance(others, others);
-    k.diagonal().array() += kernel.noise;
-    const math::Cholesky factor(k);
-    if (!factor.succeeded()) throw NumericalError("kernel smoother: the covariance is not positive definite");
-    MatrixXd found = factor.solve(covariance(others, own)).transpose();
-    if (about_mean) found.colwise() -= found.rowwise().mean().eval();
-    weights(own, others) = found;
+    const MatrixD z_others = z(others, Eigen::all);
+    MatrixXd products = gram(others, others);
+    if (about_mean) products = about_mean_of_rows(about_mean_of_rows(products).transpose());
+    const SmootherModes modes = modes_of(learned.kernel, z_others, products, limits, n_threads);
+    const MatrixXd found = weights_of_cases(modes, learned.kernel, z_others, z(own, Eigen::all));
+    weights(own, others) = about_mean ? about_mean_of_rows(found.transpose()).transpose() : found;
   }
   return weights;
 }
@@ -474,9 +454,13 @@ MatrixF KernelMethod::cross_predict_at_once(FieldParts field, const field::Field
                                       -static_cast<float>(n - static_cast<Index>(own.size()));
     for (const Index i : own) found.row(i) = field.mean.transpose().cast<float>() + others;
   }
+  double may_drop = 0;
   learn(field, data, cases, context, [&](std::size_t c, const Learned& learned) {
+    if (c == 0) may_drop = options_.dropped * math::sum_of_squares(learned.residuals);
     if (learned.predicts)
-      found += weights_without_own_fold(learned.kernel, field.features.z, places, c == 0).cast<float>() *
+      found += weights_without_own_fold(learned, field.features.z, places, limits_of(c, may_drop),
+                                        context.n_threads)
+                   .cast<float>() *
                learned.shrunk;
   });
   MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());

@@ -47,7 +47,9 @@ MatrixD columns(const MatrixD& z, const std::vector<Index>& used) {
 }
 
 /// theta = (log lengths, log linear, log noise)
-double symmetric_objective(const MatrixD& x, const MatrixXd& gram, math::Covariance kind,
+/// @param criterion(covariance, noise, &slope): a value and its derivative by the covariance
+template <class Criterion>
+double symmetric_objective(const MatrixD& x, math::Covariance kind, const Criterion& criterion,
                            const VectorXd& theta, VectorXd& gradient) {
   const Index p = x.cols();
   const VectorXd inverse = (-theta.head(p)).array().exp();
@@ -57,7 +59,7 @@ double symmetric_objective(const MatrixD& x, const MatrixXd& gram, math::Covaria
   const MatrixXd dots = a * a.transpose();
   MatrixXd slope;
   const MatrixXd k = (m.k + linear * dots).array() + mean_variance;
-  const double value = leave_one_out_error(k, noise, gram, &slope);
+  const double value = criterion(k, noise, &slope);
 
   gradient.setZero(theta.size());
   if (!std::isfinite(value)) return value;
@@ -121,6 +123,10 @@ math::Objective logarithm(const F& objective) {
   };
 }
 
+struct Bounds {
+  VectorXd lower, upper;
+};
+
 VectorXd logs(Index n, double repeated, std::initializer_list<double> rest) {
   VectorXd values(n + static_cast<Index>(rest.size()));
   values.head(n).setConstant(std::log(repeated));
@@ -133,10 +139,6 @@ constexpr math::MinimiseOptions search{
 /// From a kernel of nearly the same cases: what more steps would gain is far below the scatter of the cases.
 constexpr math::MinimiseOptions search_nearby{
     .max_iterations = 15, .memory = 10, .gradient_tolerance = 1e-5, .value_tolerance = 1e-6};
-
-struct Bounds {
-  VectorXd lower, upper;
-};
 
 /// The least of what searches from each of `starts` find: a smooth field's error has several valleys.
 math::Minimum least(const math::Objective& objective, std::span<const VectorXd> starts, const Bounds& bounds,
@@ -154,6 +156,39 @@ VectorXd symmetric_start(const model::SmootherKernel& near, const std::vector<In
   theta << -near.inverse_lengths(used).array().log(), std::log(near.linear), std::log(near.noise);
   return theta;
 }
+
+model::SmootherKernel symmetric_kernel(const VectorXd& theta, const std::vector<Index>& used,
+                                       Index n_features, math::Covariance covariance) {
+  const auto p = static_cast<Index>(used.size());
+  model::SmootherKernel kernel{.covariance = covariance,
+                               .linear = std::exp(theta[p]),
+                               .constant = mean_variance,
+                               .noise = std::exp(theta[p + 1])};
+  kernel.inverse_lengths = kernel.imbalance = VectorXd::Zero(n_features);
+  kernel.inverse_lengths(used) = (-theta.head(p)).array().exp();
+  return kernel;
+}
+
+Bounds symmetric_bounds(Index n_lengths) {
+  return {logs(n_lengths, 0.5, {1e-3, 1e-8}), logs(n_lengths, 200, {30, 100})};
+}
+
+/// Negative log likelihood of one mode, its signal the best one, without constants.
+double mode_likelihood(const MatrixXd& covariance, double noise, const VectorXd& y, MatrixXd* slope) {
+  const auto n = static_cast<double>(y.size());
+  MatrixXd k = covariance;
+  k.diagonal().array() += noise;
+  const math::Cholesky factor(k);
+  if (!factor.succeeded()) return std::numeric_limits<double>::infinity();
+  const MatrixXd inverse = factor.inverse();
+  const VectorXd alpha = inverse * y;
+  const double squares = y.dot(alpha);
+  *slope = 0.5 * inverse - (0.5 * n / squares) * alpha * alpha.transpose();
+  return 0.5 * n * std::log(squares) + 0.5 * factor.log_determinant();
+}
+
+/// Standard deviations of what modes depart by from their field, of the logarithms of lengths and noise.
+constexpr double length_departure = 0.3, noise_departure = 1;
 
 VectorXd antisymmetric_start(const model::SmootherKernel& near, const model::SmootherKernel& symmetric,
                              const std::vector<Index>& imbalances) {
@@ -212,22 +247,40 @@ model::SmootherKernel fit_symmetric_kernel(const MatrixD& z, const std::vector<I
                                            const model::SmootherKernel* near) {
   const MatrixD x = columns(z, used);
   const auto p = x.cols();
+  const auto error = [&](const MatrixXd& k, double noise, MatrixXd* slope) {
+    return leave_one_out_error(k, noise, gram, slope);
+  };
   const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
-    return symmetric_objective(x, gram, covariance, theta, gradient);
+    return symmetric_objective(x, covariance, error, theta, gradient);
   };
   std::vector<VectorXd> starts{logs(p, 4, {0.3, 0.3}), logs(p, 2, {0.3, 1e-4})};
   if (near != nullptr) starts = {symmetric_start(*near, used)};
   const math::Minimum best =
-      least(logarithm(objective), starts, {logs(p, 0.5, {1e-3, 1e-8}), logs(p, 200, {30, 100})},
-            near == nullptr ? search : search_nearby);
-  model::SmootherKernel kernel{.covariance = covariance,
-                               .linear = std::exp(best.x[p]),
-                               .constant = mean_variance,
-                               .noise = std::exp(best.x[p + 1])};
-  kernel.inverse_lengths = kernel.imbalance = VectorXd::Zero(z.cols());
-  for (Index j = 0; j < p; ++j)
-    kernel.inverse_lengths[used[static_cast<std::size_t>(j)]] = std::exp(-best.x[j]);
-  return kernel;
+      least(logarithm(objective), starts, symmetric_bounds(p), near == nullptr ? search : search_nearby);
+  return symmetric_kernel(best.x, used, z.cols(), covariance);
+}
+
+model::SmootherKernel fit_mode_kernel(const MatrixD& z, const VectorXd& coefficients,
+                                      const model::SmootherKernel& field) {
+  std::vector<Index> used;
+  for (Index j = 0; j < z.cols(); ++j)
+    if (field.inverse_lengths[j] > 0) used.push_back(j);
+  const MatrixD x = columns(z, used);
+  const VectorXd start = symmetric_start(field, used);
+  VectorXd spread = VectorXd::Constant(start.size(), length_departure);
+  spread[start.size() - 1] = noise_departure;
+  const auto likelihood = [&](const MatrixXd& k, double noise, MatrixXd* slope) {
+    return mode_likelihood(k, noise, coefficients, slope);
+  };
+  const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
+    const VectorXd departure = (theta - start).cwiseQuotient(spread);
+    const double value = symmetric_objective(x, field.covariance, likelihood, theta, gradient);
+    gradient += departure.cwiseQuotient(spread);
+    return value + 0.5 * departure.squaredNorm();
+  };
+  const Bounds bounds = symmetric_bounds(x.cols());
+  const auto best = math::minimise(objective, start, bounds.lower, bounds.upper, search_nearby);
+  return symmetric_kernel(best.x, used, z.cols(), field.covariance);
 }
 
 model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z, const model::SmootherKernel& symmetric,

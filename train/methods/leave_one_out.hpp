@@ -1,6 +1,6 @@
 #pragma once
-// Hyperparameters of a smoother by the leave-one-case-out error
-// of whole fields, in closed form; internal to study.
+// Hyperparameters of a smoother by the leave-one-case-out error of whole fields, in closed form, and of a
+// mode by its likelihood; internal to study.
 
 #include <Eigen/Core>
 #include <span>
@@ -39,6 +39,14 @@ struct StationaryKernel {
                                                          const Eigen::MatrixXd& gram,
                                                          math::Covariance covariance,
                                                          const model::SmootherKernel* near = nullptr);
+
+/// The kernel of one mode of a field: of all departures from the field's own, in the logarithms of lengths and
+/// noise, the one that the mode's coefficients make most probable (Rasmussen & Williams 2006, eq. 2.30, with
+/// the signal of the largest likelihood) where departures are normal a priori. So a mode that its few cases
+/// say little about keeps near to what the whole field says.
+/// @param coefficients of the cases, (n_cases) @param field symmetric
+[[nodiscard]] model::SmootherKernel fit_mode_kernel(const MatrixD& z, const Eigen::VectorXd& coefficients,
+                                                    const model::SmootherKernel& field);
 
 /// @param symmetric the field's symmetric kernel: its lengths are kept, up to one common factor
 /// @param imbalances features of the antisymmetric part @param near as above

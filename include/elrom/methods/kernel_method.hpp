@@ -6,6 +6,9 @@
 // Gaussian) and the form in which an input enters that varies by more than a factor of two (itself,
 // logarithm, inverse).
 //
+// One noise for all that a field does smooths its leading modes too much, and the rest too little: the leading
+// modes of what the smoother says have lengths and noise of their own, by likelihood near those of the field.
+//
 // Why it does better than POD with a process a mode on few cases: mirror images are
 // used exactly instead of by augmentation; all modes share one covariance with few,
 // physical inputs; noise that no input explains is shrunk.
@@ -20,6 +23,7 @@ struct KernelOptions {
   /// Energy that truncating the modes of a part may drop, as a share of the error's energy
   double dropped = 1e-3;
   std::size_t most_modes = 80;  ///< for the symmetric part; an antisymmetric part has at most a quarter of it
+  std::size_t own_modes = 8;    ///< leading modes of the symmetric part with lengths and noise of their own
   int passes = 2;  ///< searches; from the second on, errors are weighted by what the first one trusts
   bool antisymmetric = true;  ///< learn the antisymmetric parts too, instead of predicting none
   bool shrink = true;         ///< spectral and cell-wise shrinkage
