@@ -404,7 +404,8 @@ MatrixXd about_mean_of_rows(MatrixXd values) {
   return values;
 }
 
-/// Weights of the training cases in what their modes predict elsewhere. @param z_new (n, n_features) @return (n, n_cases)
+/// Weights of the training cases in what their modes predict elsewhere, (n, n_cases).
+/// @param z_new (n, n_features)
 MatrixXd weights_of_cases(const SmootherModes& modes, const model::SmootherKernel& common, const MatrixD& z,
                           const MatrixD& z_new) {
   MatrixXd weights = MatrixXd::Zero(z_new.rows(), z.rows());

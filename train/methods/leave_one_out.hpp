@@ -40,10 +40,10 @@ struct StationaryKernel {
                                                          math::Covariance covariance,
                                                          const model::SmootherKernel* near = nullptr);
 
-/// The kernel of one mode of a field: of all departures from the field's own, in the logarithms of lengths and
-/// noise, the one that the mode's coefficients make most probable (Rasmussen & Williams 2006, eq. 2.30, with
-/// the signal of the largest likelihood) where departures are normal a priori. So a mode that its few cases
-/// say little about keeps near to what the whole field says.
+/// The kernel of one mode of a field: of all departures from the field's own, in the logarithms of lengths
+/// and noise, the one that the mode's coefficients make most probable (Rasmussen & Williams 2006, eq. 2.30,
+/// with the signal of the largest likelihood) where departures are normal a priori. So a mode that its few
+/// cases say little about keeps near to what the whole field says.
 /// @param coefficients of the cases, (n_cases) @param field symmetric
 [[nodiscard]] model::SmootherKernel fit_mode_kernel(const MatrixD& z, const Eigen::VectorXd& coefficients,
                                                     const model::SmootherKernel& field);

@@ -2,9 +2,9 @@
 // The modes in which a smoother lets a field vary, and the process of each: the smoother has one noise for
 // all that a field does, although its leading modes hardly are noise; internal to study.
 //
-// A mode is a combination of cases, so a case's product with a mode holds the case's product with itself, its
-// noise squared, which would pass for signal and make every mode look predictable. So that noise is taken from
-// each case's product with itself: of what the others do not predict of the case, the share that by the
+// A mode is a combination of cases, so a case's product with a mode holds the case's product with itself,
+// its noise squared, which would pass for signal and make every mode look predictable. So that noise is taken
+// from each case's product with itself: of what the others do not predict of the case, the share that by the
 // smoother's own account is noise and not too few cases, noise P_ii (Rasmussen & Williams 2006, eq. 5.12).
 
 #include <Eigen/Core>

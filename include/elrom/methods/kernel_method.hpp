@@ -6,8 +6,9 @@
 // Gaussian) and the form in which an input enters that varies by more than a factor of two (itself,
 // logarithm, inverse).
 //
-// One noise for all that a field does smooths its leading modes too much, and the rest too little: the leading
-// modes of what the smoother says have lengths and noise of their own, by likelihood near those of the field.
+// One noise for all that a field does smooths its leading modes too much, and the rest too little: the
+// leading modes of what the smoother says have lengths and noise of their own, by likelihood near those of
+// the field.
 //
 // Why it does better than POD with a process a mode on few cases: mirror images are
 // used exactly instead of by augmentation; all modes share one covariance with few,
