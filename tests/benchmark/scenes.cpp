@@ -10,6 +10,7 @@
 #include "elrom/particle/drag.hpp"
 #include "elrom/scene/simulation.hpp"
 #include "scene_beds.hpp"
+#include "scene_liggghts.hpp"
 #include "support/benchmark.hpp"
 
 namespace {
@@ -198,12 +199,31 @@ void measure_streams(bool small, Json& json) {
   json["swept_sphere_steps_per_second"] = n * 12000 / table[4]["seconds"].get<double>();
 }
 
+// Both by the same law in the same steps, one after the other on one core.
+void measure_liggghts(bool small, Json& json) {
+  const auto text = crossing(small ? 800 : 12000, "dem", 1e-4);
+  const auto theirs = benchmark::by_liggghts(scene::parse_scene(text, "bench"));
+  if (!theirs) return;
+  const auto ours = run(text);
+  json["liggghts"] = {{"steps", theirs->steps},
+                      {"time_step_s", theirs->time_step},
+                      {"collisions", theirs->collisions},
+                      {"energy_ratio", theirs->energy_ratio},
+                      {"dem_collisions", ours.collisions},
+                      {"dem_energy_ratio", ours.energy_ratio},
+                      {"dem_seconds", ours.seconds}};
+  json["liggghts_seconds"] = theirs->seconds;
+  json["dem_speedup"] = theirs->seconds / ours.seconds;
+}
+
 void measure(const std::string& part, const benchmark::Arguments& arguments,
              const std::vector<std::string>& changes, Json& json) {
   if (part == "streams")
     measure_streams(arguments.small, json);
   else if (part == "haff")
     json["haff"] = all_haff(arguments.small);
+  else if (part == "liggghts")
+    measure_liggghts(arguments.small, json);
   else if (part == "beds")
     json["beds"] = benchmark::straight_beds(arguments.small, "hel", changes);
   else if (part == "beds_dem")
@@ -222,8 +242,8 @@ int main(int argc, char** argv) {
     benchmark::CommandLine line("Spheres in scenes: counts, energy, pressure, seconds by model and step.");
     benchmark::Arguments arguments;
     arguments.add_to(line, "not used");
-    std::vector<std::string> parts{"streams", "haff"}, changes;
-    line.add_list("--parts", parts, "streams, haff, beds, beds_dem, cfb");
+    std::vector<std::string> parts{"streams", "haff", "liggghts"}, changes;
+    line.add_list("--parts", parts, "streams, haff, liggghts, beds, beds_dem, cfb");
     line.add_repeated("--set", changes, "key=value: a setting of the scenes of files; repeatable");
     if (const auto status = line.parse(argc, argv)) return *status;
     Json json;
