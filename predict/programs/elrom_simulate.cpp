@@ -14,15 +14,23 @@
 #include "elrom/cli/cli.hpp"
 #include "elrom/scene/scene_run.hpp"
 #include "elrom/units/udunits.hpp"
+#if ELROM_HAS_LAMMPS
+#include "elrom/lammps/world.hpp"
+#endif
 
 namespace elrom::programs {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+enum class Engine { native, lammps };
+constexpr base::EnumNames<Engine, 2> engines{"--engine",
+                                             {{Engine::native, "native"}, {Engine::lammps, "lammps"}}};
+
 struct SimulateOptions {
   std::filesystem::path scene, output, json;
   std::vector<std::string> changes;
+  std::string engine = "native";
   int threads = base::available_threads();
   bool explain = false, small = false;
 };
@@ -125,11 +133,13 @@ void report(const scene::Simulation& simulation, const scene::SceneRun& run, con
   fmt::print("Written: {}\n", options.output.string());
 }
 
-int simulate(const SimulateOptions& options) {
-  units::use_udunits();
+scene::SceneSettings settings_of(const SimulateOptions& options) {
   auto settings = scene::read_scene(options.scene, options.changes);
   if (options.small) settings.duration = std::min(settings.duration, 20 * settings.time_step);
-  scene::Simulation simulation(settings, options.threads);
+  return settings;
+}
+
+int simulate(scene::Simulation& simulation, const SimulateOptions& options) {
   if (options.explain) {
     simulation.try_cells();
     explain(simulation, false);
@@ -146,6 +156,31 @@ int simulate(const SimulateOptions& options) {
   return 0;
 }
 
+int simulate_alone(const SimulateOptions& options) {
+  scene::Simulation simulation(settings_of(options), options.threads);
+  return simulate(simulation, options);
+}
+
+#if ELROM_HAS_LAMMPS
+int simulate_with_lammps(SimulateOptions options) {
+  (void)base::interrupt_token();  // before the ranks meet: one that a signal ends would end the others
+  lammps::World world;
+  options.threads = 1;
+  if (world.rank() > 0) {
+    world.serve();
+    return 0;
+  }
+  const auto settings = settings_of(options);
+  scene::Simulation simulation(settings, options.threads, world.movers(settings));
+  return simulate(simulation, options);
+}
+#else
+int simulate_with_lammps(const SimulateOptions&) {
+  throw NotBuiltError({.what = "--engine lammps needs LAMMPS and MPI, which this build left out",
+                       .advice = "install liblammps-dev and build again, or run without --engine"});
+}
+#endif
+
 int run_simulate(int argc, char** argv) {
   SimulateOptions options;
   cli::App app(
@@ -160,13 +195,20 @@ int run_simulate(int argc, char** argv) {
   app.add_option("--threads", options.threads, "Processor threads; the result does not depend on them")
       ->check(cli::PositiveNumber)
       ->capture_default_str();
+  app.add_option(
+         "--engine", options.engine,
+         "native, or lammps: in several processes, under mpirun; helscm without inlets, outlets or parcels")
+      ->type_name("ENGINE")
+      ->capture_default_str();
   app.add_flag("--explain", options.explain,
                "Print what each effect costs, estimated before and measured after");
   app.add_flag("--small", options.small, "At most 20 time steps");
   app.add_option("--json", options.json, "Write what happened to this file too")->type_name("FILE");
   app.footer([] { return "Settings of a scene:\n" + scene::scene_help(); });
   if (const auto status = app.parse(argc, argv)) return *status;
-  return simulate(options);
+  units::use_udunits();
+  return engines.value<UsageError>(options.engine) == Engine::lammps ? simulate_with_lammps(options)
+                                                                     : simulate_alone(options);
 }
 
 }  // namespace

@@ -279,8 +279,11 @@ SceneRun run(Simulation& simulation, const path& folder, Log& log, const std::st
     simulation.step();
     ++done.steps;
     const auto step = simulation.state().step;
-    if (step % every == 0 || simulation.done()) outputs.add_rows();
-    if (step % keep_every == 0 || simulation.done()) {
+    const bool shows = step % every == 0 || simulation.done(),
+               keeps = step % keep_every == 0 || simulation.done();
+    if (shows || keeps) simulation.gather();
+    if (shows) outputs.add_rows();
+    if (keeps) {
       keep(simulation, outputs, file);
       outputs.write();
     }

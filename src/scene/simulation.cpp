@@ -134,7 +134,7 @@ std::string digest_of(const SceneSettings& settings) {
   return digest.hex();
 }
 
-Simulation::Simulation(SceneSettings settings, int n_threads)
+Simulation::Simulation(SceneSettings settings, int n_threads, const MakeMover& make)
     : settings_(std::move(settings)), n_threads_(n_threads), domain_(settings_.domain()) {
   if (settings_.needs_grid()) grid_ = std::make_shared<CellGrid>(domain_, settings_.cell);
   const auto m = mover_of(settings_, grid_, n_threads_);
@@ -145,7 +145,7 @@ Simulation::Simulation(SceneSettings settings, int n_threads)
   state_.particles.remembers_hits = m.collisions == Collisions::helscm && m.contact_time > 0;
   place_groups();
   add_forces();
-  mover_ = make_mover(domain_, m);
+  mover_ = make(domain_, m);
   add(motion(settings_, m, *mover_));
   add_openings();
 }

@@ -5,19 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/scene/neighbours.hpp"
+#include "encounters.hpp"
 #include "movers.hpp"
-#include "one_collision.hpp"
-#include "walls.hpp"
 
 namespace elrom::scene {
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double swept_pair_seconds = 1e-9;  // of the list, in a step
 constexpr double reserve = 1.2;              // a sphere may become this much faster before the step is cut
 constexpr std::int64_t most_events = 20;     // a sphere, in the time it takes to cross the skin; more: jammed
@@ -35,21 +32,10 @@ struct Event {
   }
 };
 
-// First contact of spheres d apart that move by w relative to each other; now for those that overlap and
-// close in.
-double contact_time(const Vec& d, const Vec& w, double reach) {
-  const double closing = dot(d, w);
-  if (!(closing < 0)) return never;
-  const double gap = dot(d, d) - reach * reach;
-  if (gap <= 0) return 0;
-  const double speed = dot(w, w), root = closing * closing - speed * gap;
-  return root < 0 ? never : gap / (std::sqrt(root) - closing);
-}
-
 class Swept final : public Mover {
  public:
   Swept(const Domain& domain, const MoverSettings& settings)
-      : domain_(domain), settings_(settings), hit_(*settings.model) {}
+      : domain_(domain), settings_(settings), encounters_(domain, settings) {}
 
   void advance(State& state, double dt) override {
     auto& p = state.particles;
@@ -145,7 +131,7 @@ class Swept final : public Mover {
     for (const auto number : neighbours_.above(i)) {
       const auto j = static_cast<std::size_t>(number);
       const Vec apart = apart_at(p, i, j, 0);
-      gap = std::min(gap, std::sqrt(dot(apart, apart)) - reach(p, i, j));
+      gap = std::min(gap, std::sqrt(dot(apart, apart)) - reach_of(p, i, j));
       seek_pair(p, i, j, apart, 0, time, events);
     }
     return 0.5 * gap;
@@ -169,7 +155,7 @@ class Swept final : public Mover {
   void seek_pair(const Particles& p, std::size_t i, std::size_t j, const Vec& apart, double now, double time,
                  std::vector<Event>& events) const {
     if (is_gone(i) || is_gone(j)) return;
-    const double in = contact_time(apart, get(p.velocity, j) - get(p.velocity, i), reach(p, i, j));
+    const double in = contact_time(apart, get(p.velocity, j) - get(p.velocity, i), reach_of(p, i, j));
     if (now + in > time) return;
     const std::size_t a = std::min(i, j), b = std::max(i, j);
     events.push_back(
@@ -194,39 +180,15 @@ class Swept final : public Mover {
     const auto j = static_cast<std::size_t>(event.j);
     bring(state, j, event.time);
     ++stamp_[j];
-    const Vec apart = domain_.images().nearest(get(p.place, j) - get(p.place, i));
-    const Vec normal = (1 / std::sqrt(dot(apart, apart))) * apart;
-    if (is_resting(p, i, event.time) || is_resting(p, j, event.time))
-      bounce(p, i, j, normal);
-    else
-      hit_.apply(p, i, j, normal);
-    if (p.remembers_hits) p.last_hit[i] = p.last_hit[j] = begin_ + event.time;
+    encounters_.collide(p, i, j, begin_ + event.time);
     state.count_collision(i, j);
   }
 
   void meet_wall(State& state, std::size_t i, const Event& event) {
-    auto& p = state.particles;
-    if (event.side->kind == SideKind::outlet) {
-      gone_[i] = 1;
-      state.leaving.push_back(static_cast<std::int32_t>(i));
-      return;
-    }
-    const bool is_new = meets(p, i, domain_.bit(*event.side));
-    auto law = settings_.walls;
-    // A contact that lasts makes no other one resting: a sphere on the floor loses energy to its neighbours.
-    if (!is_new && is_resting(p, i, event.time)) law.normal_restitution = law.tangential_restitution = 1;
-    set(p.velocity, i, reflected(get(p.velocity, i), *event.side, law));
-    if (!is_new) return;
-    if (p.remembers_hits) p.last_hit[i] = begin_ + event.time;
-    state.count_wall_hits(static_cast<std::size_t>(p.group[i]), 1);
-  }
-
-  // Without loss.
-  static void bounce(Particles& p, std::size_t i, std::size_t j, const Vec& normal) {
-    const double closing = dot(get(p.velocity, i) - get(p.velocity, j), normal);
-    const double impulse = 2 * closing * p.mass[i] * p.mass[j] / (p.mass[i] + p.mass[j]);
-    set(p.velocity, i, get(p.velocity, i) - (impulse / p.mass[i]) * normal);
-    set(p.velocity, j, get(p.velocity, j) + (impulse / p.mass[j]) * normal);
+    if (event.side->kind != SideKind::outlet)
+      return encounters_.meet_wall(state, i, *event.side, begin_ + event.time);
+    gone_[i] = 1;
+    state.leaving.push_back(static_cast<std::int32_t>(i));
   }
 
   Event pop() {
@@ -239,17 +201,11 @@ class Swept final : public Mover {
     return stamp_[static_cast<std::size_t>(event.i)] != event.stamp_i ||
            (event.j != no_sphere && stamp_[static_cast<std::size_t>(event.j)] != event.stamp_j);
   }
-  [[nodiscard]] bool is_resting(const Particles& p, std::size_t i, double now) const {
-    return p.remembers_hits && begin_ + now - p.last_hit[i] < settings_.contact_time;
-  }
   [[nodiscard]] bool is_gone(std::size_t i) const { return !gone_.empty() && gone_[i] != 0; }
   [[nodiscard]] static bool is_faster(const Particles& p, std::int32_t i, double fastest) {
     if (i == no_sphere) return false;
     const Vec v = get(p.velocity, static_cast<std::size_t>(i));
     return dot(v, v) > fastest * fastest;
-  }
-  [[nodiscard]] static double reach(const Particles& p, std::size_t i, std::size_t j) {
-    return 0.5 * (p.contact_diameter()[i] + p.contact_diameter()[j]);
   }
   [[nodiscard]] Vec apart_at(const Particles& p, std::size_t i, std::size_t j, double now) const {
     const Vec apart = place_at(p, j, now) - place_at(p, i, now);
@@ -267,7 +223,7 @@ class Swept final : public Mover {
 
   const Domain& domain_;
   MoverSettings settings_;
-  OneCollision hit_;
+  Encounters encounters_;
   NeighbourList neighbours_;
   bool fresh_ = false;
   double skin_ = 0, used_ = 0;  // of the list: m, and how much of it has been travelled

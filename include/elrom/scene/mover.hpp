@@ -14,6 +14,7 @@
 //
 // Thread rule: one thread calls; advance() uses threads of its own, and gives the same bits for any number.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -98,6 +99,9 @@ class Mover {
   [[nodiscard]] virtual bool takes_push() const { return false; }
   /// Spheres came, went, or were read from a checkpoint: lists of neighbours are made anew.
   virtual void forget() {}
+  /// Brings all spheres and counts into `state`, in the order of their numbers, where several processes
+  /// share them.
+  virtual void gather(State&) {}
   [[nodiscard]] virtual std::size_t bytes() const { return 0; }
   /// For people: inner steps, contacts.
   [[nodiscard]] virtual std::string text() const { return {}; }
@@ -120,6 +124,7 @@ struct MoverSettings {
   int n_threads = 1;
 };
 
+using MakeMover = std::function<std::unique_ptr<Mover>(const Domain& domain, const MoverSettings& settings)>;
 /// @param domain lives longer
 [[nodiscard]] std::unique_ptr<Mover> make_mover(const Domain& domain, const MoverSettings& settings);
 

@@ -25,7 +25,7 @@ class Simulation {
   /// Reads what the effects need, places the spheres that are there at the start.
   /// @throws UsageError, InputError for what cannot be: no room for the spheres, an unknown region,
   /// friction with ...
-  Simulation(SceneSettings settings, int n_threads);
+  Simulation(SceneSettings settings, int n_threads, const MakeMover& make = make_mover);
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -42,6 +42,8 @@ class Simulation {
 
   /// One time step. @throws NumericalError where something is no number any more
   void step();
+  /// Before state() is looked at as a whole: spheres that other processes have come back for it.
+  void gather() { mover_->gather(state_); }
   /// Estimates are by the number of spheres; those of effects that work on cells too only after try_cells().
   [[nodiscard]] std::vector<EffectCost> costs() const;
   /// Runs the first ten steps of a copy of this scene, where an effect works on cells, and keeps their cost
