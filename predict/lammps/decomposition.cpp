@@ -26,6 +26,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numeric>
 
 #include "elrom/base/error.hpp"
 
@@ -109,12 +110,12 @@ class Decomposition::Box {
   void forward(std::span<double> values, std::size_t width) const { forward_->run(values, width); }
 
   void renew(double skin) {
-    // Cells are half as wide as a pair reaches, or hold a sphere or so where spheres are far apart.
+    // Cells are half as wide as a pair reaches; of spheres that fill little of their box they would be too many.
     const auto& d = *lammps_->domain;
     double volume = 1;
     for (int a = 0; a < 3; ++a) volume *= d.boxhi[a] - d.boxlo[a];
     const double cell =
-        std::max(0.5 * (reach_ + skin), std::cbrt(volume / static_cast<double>(atom().natoms)));
+        std::max(0.5 * (reach_ + skin), std::cbrt(volume / (100.0 * static_cast<double>(atom().natoms))));
     command("neighbor {:.17g} bin", skin);
     command("neigh_modify binsize {:.17g}", cell);
     command("run 0 post no");
@@ -260,22 +261,24 @@ void Decomposition::renew(double skin) {
 void Decomposition::list_partners() {
   const auto& list = box_->list();
   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  auto& begin = partners_.begin;
+  begin.assign(state_.particles.size() + 1, 0);
   for (int k = 0; k < list.inum; ++k) {
     const int i = list.ilist[k];
     for (int m = 0; m < list.numneigh[i]; ++m) {
       const int j = box_->atom().map(box_->atom().tag[list.firstneigh[i][m] & NEIGHMASK]);
-      if (j != i) pairs.emplace_back(i, j), pairs.emplace_back(j, i);
+      if (j == i) continue;
+      pairs.emplace_back(i, j);
+      ++begin[static_cast<std::size_t>(i) + 1], ++begin[static_cast<std::size_t>(j) + 1];
     }
   }
-  std::ranges::sort(pairs);
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  partners_.begin.assign(state_.particles.size() + 1, 0);
-  partners_.of.clear();
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  partners_.of.resize(begin.back());
+  auto next = begin;
   for (const auto& [i, j] : pairs) {
-    ++partners_.begin[static_cast<std::size_t>(i) + 1];
-    partners_.of.push_back(j);
+    partners_.of[next[static_cast<std::size_t>(i)]++] = j;
+    partners_.of[next[static_cast<std::size_t>(j)]++] = i;
   }
-  for (std::size_t i = 1; i < partners_.begin.size(); ++i) partners_.begin[i] += partners_.begin[i - 1];
 }
 
 void Decomposition::fly(double time) {

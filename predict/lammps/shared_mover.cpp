@@ -19,7 +19,7 @@ using scene::set;
 using scene::State;
 
 constexpr double reserve = 1.2;        // a sphere may become this much faster in a span of time
-constexpr double pair_seconds = 1e-9;  // of the list, in a step
+constexpr double pair_seconds = 1e-7;  // of the list, in a step: LAMMPS makes long ones slowly
 
 // Spheres on their way: a row each.
 constexpr std::size_t row_width = 18;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "elrom/base/error.hpp"
 #include "encounters.hpp"
@@ -39,7 +40,10 @@ class SharedSweep::Impl {
       happen();
       share();
     }
-    for (std::size_t i = 0; i < n_own; ++i) set(p().place, i, place_at(i, 0));
+    for (std::size_t i = 0; i < n_own; ++i) {
+      leave_walls(state, i, domain_, place_at(i, span.time), span.step);
+      set(p().place, i, place_at(i, 0));
+    }
     return true;
   }
 
@@ -49,20 +53,30 @@ class SharedSweep::Impl {
   void begin() {
     clock_.assign(p().size(), 0);
     next_.assign(n_own_, {});
-    is_changed_.assign(p().size(), 0);
+    claims_.assign(p().size(), no_claim);
+    width_ = p().rotates ? 11 : 8;
+    states_.resize(p().size() * width_);
+    for (std::size_t i = 0; i < n_own_; ++i) pack(i);
+    busy_.clear(), changed_.clear();
+    share();
+    stale_.resize(n_own_);
+    std::iota(stale_.begin(), stale_.end(), 0);
     is_stale_.assign(n_own_, 1);
     left_ = most_shared_events * static_cast<std::int64_t>(n_own_) + 1000;
     is_too_fast_ = false;
-    share();
   }
 
   // Renews what is next for spheres about which something changed. @return the earliest
   double seek() {
-    double earliest = never;
-    for (std::size_t i = 0; i < n_own_; ++i) {
-      if (is_stale_[i] != 0) next_[i] = next_of(i), is_stale_[i] = 0;
-      earliest = std::min(earliest, next_[i].time);
+    std::erase_if(busy_, [&](std::int32_t i) { return is_stale_[at(i)] != 0; });
+    for (const auto i : stale_) {
+      next_[at(i)] = next_of(at(i));
+      is_stale_[at(i)] = 0;
+      if (next_[at(i)].time <= span_.time) busy_.push_back(i);
     }
+    stale_.clear();
+    double earliest = never;
+    for (const auto i : busy_) earliest = std::min(earliest, next_[at(i)].time);
     return earliest;
   }
   // Of events at the same time that with the lowest number, so that partners agree.
@@ -82,19 +96,21 @@ class SharedSweep::Impl {
   }
 
   [[nodiscard]] bool is_lower(std::size_t j, const Next& next) const {
-    return next.partner != no_partner && p().id[j] < p().id[static_cast<std::size_t>(next.partner)];
+    return next.partner != no_partner && p().id[j] < p().id[at(next.partner)];
   }
 
   // Says for each own sphere with whom it collides in this round. @param first event of all processes
   void claim(double first) {
-    values_.assign(p().size(), left_ > 0 ? no_claim : jammed);
-    for (std::size_t i = 0; i < n_own_; ++i) {
+    if (left_ <= 0) std::fill_n(claims_.begin(), n_own_, jammed);
+    for (const auto number : busy_) {
+      const auto i = at(number);
+      if (claims_[i] == jammed) continue;
       const auto& next = next_[i];
-      if (left_ <= 0 || next.time > span_.time || !is_safe(i, first)) continue;
-      values_[i] = next.side != nullptr ? wall_claim
-                                        : static_cast<double>(p().id[static_cast<std::size_t>(next.partner)]);
+      claims_[i] = !is_safe(i, first)     ? no_claim
+                   : next.side != nullptr ? wall_claim
+                                          : static_cast<double>(p().id[at(next.partner)]);
     }
-    team_->forward(values_, 1);
+    team_->forward(claims_, 1);
   }
   // Whether no third sphere can reach this one before its next event. What a sphere does after its clock, and
   // after the first event, is not known; how fast it is at most is.
@@ -114,18 +130,22 @@ class SharedSweep::Impl {
   }
 
   void happen() {
-    for (std::size_t i = 0; i < n_own_; ++i) {
+    for (const auto number : busy_) {
+      const auto i = at(number);
       const auto& next = next_[i];
-      if (next.time > span_.time) continue;
-      const auto j = static_cast<std::size_t>(next.partner);
-      if (values_[i] == jammed || (next.side == nullptr && values_[j] == jammed))
+      if (claims_[i] == jammed || (next.side == nullptr && claims_[at(next.partner)] == jammed))
         skip(i);
-      else if (values_[i] == wall_claim)
+      else if (claims_[i] == wall_claim)
         meet_wall(i, next);
-      else if (values_[i] != no_claim && (j >= n_own_ || i < j) &&
-               values_[j] == static_cast<double>(p().id[i]))
-        collide(i, j, next.time);
+      else if (claims_[i] != no_claim && is_agreed(i, at(next.partner)))
+        collide(i, at(next.partner), next.time);
     }
+    for (const auto i : busy_)
+      if (claims_[at(i)] != jammed) claims_[at(i)] = no_claim;
+  }
+  // Of two own spheres the first one speaks.
+  [[nodiscard]] bool is_agreed(std::size_t i, std::size_t j) const {
+    return (j >= n_own_ || i < j) && claims_[j] == static_cast<double>(p().id[i]);
   }
   void meet_wall(std::size_t i, const Next& next) {
     bring(i, next.time);
@@ -147,46 +167,49 @@ class SharedSweep::Impl {
   void changed(std::size_t i) {
     const Vec v = get(p().velocity, i);
     if (!(dot(v, v) <= span_.fastest * span_.fastest)) is_too_fast_ = true;
-    is_changed_[i] = 1;
+    changed_.push_back(static_cast<std::int32_t>(i));
+    if (i < n_own_) pack(i);
     --left_;
   }
 
   // Ghosts become what their owners have made of them.
   void share() {
-    const std::size_t width = p().rotates ? 11 : 8;
-    values_.resize(p().size() * width);
-    for (std::size_t i = 0; i < n_own_; ++i) pack(i, values_.data() + i * width);
-    team_->forward(values_, width);
-    for (std::size_t i = n_own_; i < p().size(); ++i) {
-      const double* from = values_.data() + i * width;
-      const Vec before = get(p().velocity, i);
-      if (from[6] != clock_[i] || before != Vec{from[3], from[4], from[5]}) is_changed_[i] = 1;
-      unpack(i, from);
+    team_->forward(states_, width_);
+    for (std::size_t i = n_own_; i < p().size(); ++i)
+      if (unpack(i)) changed_.push_back(static_cast<std::int32_t>(i));
+    for (const auto i : changed_) {
+      make_stale(i);
+      for (const auto j : partners_->row(at(i))) make_stale(j);
     }
-    for (std::size_t i = 0; i < p().size(); ++i)
-      if (is_changed_[i] != 0) make_stale(i);
+    changed_.clear();
   }
-  void make_stale(std::size_t i) {
-    is_changed_[i] = 0;
-    if (i < n_own_) is_stale_[i] = 1;
-    for (const auto j : partners_->row(i))
-      if (static_cast<std::size_t>(j) < n_own_) is_stale_[static_cast<std::size_t>(j)] = 1;
+  void make_stale(std::int32_t i) {
+    if (at(i) >= n_own_ || is_stale_[at(i)] != 0) return;
+    is_stale_[at(i)] = 1;
+    stale_.push_back(i);
   }
-  void pack(std::size_t i, double* to) const {
+  void pack(std::size_t i) {
+    double* to = states_.data() + i * width_;
     for (std::size_t a = 0; a < 3; ++a) to[a] = p().place[a][i], to[3 + a] = p().velocity[a][i];
     to[6] = clock_[i];
     to[7] = p().remembers_hits ? p().last_hit[i] : 0;
     if (p().rotates)
       for (std::size_t a = 0; a < 3; ++a) to[8 + a] = p().spin[a][i];
   }
-  void unpack(std::size_t i, const double* from) {
-    for (std::size_t a = 0; a < 3; ++a) p().place[a][i] = from[a], p().velocity[a][i] = from[3 + a];
+  // @return whether its path is another one
+  bool unpack(std::size_t i) {
+    const double* from = states_.data() + i * width_;
+    const Vec velocity{from[3], from[4], from[5]};
+    const bool is_new = from[6] != clock_[i] || velocity != get(p().velocity, i);
+    set(p().place, i, {from[0], from[1], from[2]});
+    set(p().velocity, i, velocity);
     clock_[i] = from[6];
     if (p().remembers_hits) p().last_hit[i] = from[7];
-    if (p().rotates)
-      for (std::size_t a = 0; a < 3; ++a) p().spin[a][i] = from[8 + a];
+    if (p().rotates) set(p().spin, i, {from[8], from[9], from[10]});
+    return is_new;
   }
 
+  [[nodiscard]] static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] double reach(std::size_t i, std::size_t j) const { return reach_of(p(), i, j); }
   [[nodiscard]] Vec place_at(std::size_t i, double now) const {
     return get(p().place, i) + (now - clock_[i]) * get(p().velocity, i);
@@ -209,8 +232,12 @@ class SharedSweep::Impl {
   Team* team_ = nullptr;
   std::vector<double> clock_;  // of each sphere: when it is where its place says, from the span's beginning
   std::vector<Next> next_;     // of own spheres
-  std::vector<std::uint8_t> is_changed_, is_stale_;
-  std::vector<double> values_;
+  std::vector<std::int32_t> busy_;     // own spheres to which something happens in the span
+  std::vector<std::int32_t> changed_;  // in this round
+  std::vector<std::int32_t> stale_;    // own spheres whose next event is to be sought again
+  std::vector<std::uint8_t> is_stale_;
+  std::vector<double> claims_, states_;  // what is handed on
+  std::size_t width_ = 0;                // of a state
   std::int64_t left_ = 0;
   bool is_too_fast_ = false;
 };

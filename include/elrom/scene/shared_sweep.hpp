@@ -33,7 +33,7 @@ class Team {
 /// Which spheres are near which: of each sphere, ghosts too, its partners; of two ghosts nothing is known.
 struct Partners {
   std::vector<std::size_t> begin;  ///< (n + 1)
-  std::vector<std::int32_t> of;    ///< ascending in a row
+  std::vector<std::int32_t> of;    ///< in any order; one may be there twice
   [[nodiscard]] std::span<const std::int32_t> row(std::size_t i) const {
     return {of.data() + begin[i], begin[i + 1] - begin[i]};
   }
