@@ -110,7 +110,8 @@ class Decomposition::Box {
   void forward(std::span<double> values, std::size_t width) const { forward_->run(values, width); }
 
   void renew(double skin) {
-    // Cells are half as wide as a pair reaches; of spheres that fill little of their box they would be too many.
+    // Cells are half as wide as a pair reaches; of spheres that fill little of their box they would be too
+    // many.
     const auto& d = *lammps_->domain;
     double volume = 1;
     for (int a = 0; a < 3; ++a) volume *= d.boxhi[a] - d.boxlo[a];

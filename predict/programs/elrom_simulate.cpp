@@ -15,7 +15,7 @@
 #include "elrom/scene/scene_run.hpp"
 #include "elrom/units/udunits.hpp"
 #if ELROM_HAS_LAMMPS
-#include "elrom/lammps/world.hpp"
+#include "elrom/lammps/processes.hpp"
 #endif
 
 namespace elrom::programs {
@@ -164,14 +164,14 @@ int simulate_alone(const SimulateOptions& options) {
 #if ELROM_HAS_LAMMPS
 int simulate_with_lammps(SimulateOptions options) {
   (void)base::interrupt_token();  // before the ranks meet: one that a signal ends would end the others
-  lammps::World world;
+  lammps::Processes processes;
   options.threads = 1;
-  if (world.rank() > 0) {
-    world.serve();
+  if (processes.rank() > 0) {
+    processes.serve();
     return 0;
   }
   const auto settings = settings_of(options);
-  scene::Simulation simulation(settings, options.threads, world.movers(settings));
+  scene::Simulation simulation(settings, options.threads, processes.movers(settings));
   return simulate(simulation, options);
 }
 #else

@@ -19,8 +19,8 @@ namespace {
 using namespace elrom::scene;
 using Path = std::filesystem::path;
 
-// In diameters, near the best of those tried on 12,000 crossing spheres. With its own cells, half as wide as a
-// pair reaches, it fills the memory once the spheres have flown apart.
+// In diameters, near the best of those tried on 12,000 crossing spheres. With its own cells, half as wide as
+// a pair reaches, it fills the memory once the spheres have flown apart.
 constexpr double skin = 1.5, cell = 7;
 constexpr int steps_between_counts = 5;  // a contact lasts twenty
 

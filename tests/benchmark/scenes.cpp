@@ -10,6 +10,7 @@
 #include "elrom/particle/drag.hpp"
 #include "elrom/scene/simulation.hpp"
 #include "scene_beds.hpp"
+#include "scene_lammps.hpp"
 #include "scene_liggghts.hpp"
 #include "support/benchmark.hpp"
 
@@ -224,6 +225,8 @@ void measure(const std::string& part, const benchmark::Arguments& arguments,
     json["haff"] = all_haff(arguments.small);
   else if (part == "liggghts")
     measure_liggghts(arguments.small, json);
+  else if (part == "lammps")
+    json["lammps"] = benchmark::by_lammps(crossing(arguments.small ? 800 : 12000, "helscm", 1e-4));
   else if (part == "beds")
     json["beds"] = benchmark::straight_beds(arguments.small, "hel", changes);
   else if (part == "beds_dem")
@@ -242,8 +245,8 @@ int main(int argc, char** argv) {
     benchmark::CommandLine line("Spheres in scenes: counts, energy, pressure, seconds by model and step.");
     benchmark::Arguments arguments;
     arguments.add_to(line, "not used");
-    std::vector<std::string> parts{"streams", "haff", "liggghts"}, changes;
-    line.add_list("--parts", parts, "streams, haff, liggghts, beds, beds_dem, cfb");
+    std::vector<std::string> parts{"streams", "haff", "liggghts", "lammps"}, changes;
+    line.add_list("--parts", parts, "streams, haff, liggghts, lammps, beds, beds_dem, cfb");
     line.add_repeated("--set", changes, "key=value: a setting of the scenes of files; repeatable");
     if (const auto status = line.parse(argc, argv)) return *status;
     Json json;

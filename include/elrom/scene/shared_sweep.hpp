@@ -52,9 +52,9 @@ class SharedSweep {
   SharedSweep(const Domain& domain, const MoverSettings& settings);
   ~SharedSweep();
 
-  /// All that happens in a span of time. Own spheres are left where a straight flight through all of the span
-  /// leads them to their places at its end. Tallies count what befalls own spheres: a pair where its sphere of
-  /// the lower number is one.
+  /// All that happens in a span of time. Own spheres are left where a straight flight through all of it leads
+  /// them to their places at its end. Tallies count what befalls own spheres: a pair where its sphere of the
+  /// lower number is one.
   /// @param state own spheres, and behind them ghosts, whose numbers and sizes are there
   /// @param partners all that can come together in the span at speeds up to span.fastest
   /// @return false, at all processes, when a sphere became faster: nothing in state is of use then

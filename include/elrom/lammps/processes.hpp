@@ -17,18 +17,18 @@
 namespace elrom::lammps {
 
 /// All processes of the job, from its making to its end: one in a process. Ranks meet in both.
-class World {
+class Processes {
  public:
-  World();
+  Processes();
   /// At rank 0: sends the others home.
-  ~World();
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
+  ~Processes();
+  Processes(const Processes&) = delete;
+  Processes& operator=(const Processes&) = delete;
 
   [[nodiscard]] int rank() const;
   [[nodiscard]] int size() const;
 
-  /// Rank 0: what moves the scene's spheres, in all processes. One simulation in a world, which it outlives.
+  /// Rank 0: what moves the scene's spheres, in all processes. One simulation, which these outlive.
   /// @throws UsageError for what such a scene cannot have: other collisions than helscm, a coupled gas or
   /// drag that asks for the voidage, outlets, inlets, parcels
   [[nodiscard]] scene::MakeMover movers(const scene::SceneSettings& settings);

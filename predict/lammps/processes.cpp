@@ -1,4 +1,4 @@
-#include "elrom/lammps/world.hpp"
+#include "elrom/lammps/processes.hpp"
 
 #include "elrom/base/error.hpp"
 #include "elrom/scene/simulation.hpp"
@@ -28,7 +28,7 @@ void expect_possible(const scene::SceneSettings& s) {
 
 }  // namespace
 
-class World::Impl {
+class Processes::Impl {
  public:
   scene::MakeMover movers() {
     return [this](const scene::Domain& domain, const scene::MoverSettings& settings) {
@@ -38,16 +38,16 @@ class World::Impl {
   Job job;
 };
 
-World::World() : impl_(std::make_unique<Impl>()) {}
+Processes::Processes() : impl_(std::make_unique<Impl>()) {}
 
-World::~World() {
+Processes::~Processes() {
   if (impl_->job.leads()) impl_->job.order(Order::end, 0);
 }
 
-int World::rank() const { return impl_->job.rank(); }
-int World::size() const { return impl_->job.size(); }
+int Processes::rank() const { return impl_->job.rank(); }
+int Processes::size() const { return impl_->job.size(); }
 
-scene::MakeMover World::movers(const scene::SceneSettings& settings) {
+scene::MakeMover Processes::movers(const scene::SceneSettings& settings) {
   expect_possible(settings);
   return [this, text = to_toml(settings), folder = settings.folder.string()](const auto& domain,
                                                                              const auto& of_mover) mutable {
@@ -58,7 +58,7 @@ scene::MakeMover World::movers(const scene::SceneSettings& settings) {
   };
 }
 
-void World::serve() {
+void Processes::serve() {
   std::unique_ptr<scene::Simulation> simulation;
   const auto begin = [&] {
     std::string text, folder;

@@ -1,6 +1,6 @@
 // elrom-simulate --engine lammps, as a user starts it, beside the native engine; what it refuses; and what
 // comes of a rank that dies.
-#include "elrom/lammps/world.hpp"
+#include "elrom/lammps/processes.hpp"
 
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -156,13 +156,13 @@ TEST_F(Engine, KnowsForcesWallsSizesSpinsAndPeriods) {
         << column;
 }
 
-TEST(LammpsWorld, RefusesWhatItCannotDo) {
-  World world;
+TEST(LammpsProcesses, RefusesWhatItCannotDo) {
+  Processes processes;
   // Of the duct with another line for its spheres, and another setting.
   const auto refusal = [&](const std::string& line,
                            const std::vector<std::string>& changes = {}) -> std::string {
     try {
-      (void)world.movers(scene::parse_scene(duct + line, "scene", changes));
+      (void)processes.movers(scene::parse_scene(duct + line, "scene", changes));
     } catch (const UsageError& error) {
       return error.what();
     }
