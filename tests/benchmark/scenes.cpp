@@ -200,6 +200,16 @@ void measure_streams(bool small, Json& json) {
   json["swept_sphere_steps_per_second"] = n * 12000 / table[4]["seconds"].get<double>();
 }
 
+Json many_spheres(int number) {
+  const auto out = run(crossing(number, "helscm", 1e-3));
+  return {{"spheres", out.spheres},
+          {"seconds", out.seconds},
+          {"collisions", out.collisions},
+          {"energy_ratio", out.energy_ratio},
+          {"greatest_energy_gain_in_a_step", out.gain},
+          {"momentum_change", out.momentum_change}};
+}
+
 // Both by the same law in the same steps, one after the other on one core.
 void measure_liggghts(bool small, Json& json) {
   const auto text = crossing(small ? 800 : 12000, "dem", 1e-4);
@@ -227,6 +237,8 @@ void measure(const std::string& part, const benchmark::Arguments& arguments,
     measure_liggghts(arguments.small, json);
   else if (part == "lammps")
     json["lammps"] = benchmark::by_lammps(crossing(arguments.small ? 800 : 12000, "helscm", 1e-4));
+  else if (part == "million")
+    json["million"] = many_spheres(arguments.small ? 50'000 : 1'000'000);
   else if (part == "beds")
     json["beds"] = benchmark::straight_beds(arguments.small, "hel", changes);
   else if (part == "beds_dem")
@@ -246,7 +258,7 @@ int main(int argc, char** argv) {
     benchmark::Arguments arguments;
     arguments.add_to(line, "not used");
     std::vector<std::string> parts{"streams", "haff", "liggghts", "lammps"}, changes;
-    line.add_list("--parts", parts, "streams, haff, liggghts, lammps, beds, beds_dem, cfb");
+    line.add_list("--parts", parts, "streams, haff, liggghts, lammps, million, beds, beds_dem, cfb");
     line.add_repeated("--set", changes, "key=value: a setting of the scenes of files; repeatable");
     if (const auto status = line.parse(argc, argv)) return *status;
     Json json;
