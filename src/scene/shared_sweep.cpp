@@ -68,7 +68,8 @@ class SharedSweep::Impl {
 
   // Renews what is next for spheres about which something changed. @return the earliest
   double seek() {
-    std::erase_if(busy_, [&](std::int32_t i) { return is_stale_[at(i)] != 0; });
+    std::erase_if(busy_,
+                  [&](std::int32_t i) { return is_stale_[at(i)] != 0 || next_[at(i)].time > span_.time; });
     for (const auto i : stale_) {
       next_[at(i)] = next_of(at(i));
       is_stale_[at(i)] = 0;

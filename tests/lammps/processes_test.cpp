@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "elrom/base/error.hpp"
-#include "elrom/io/csv.hpp"
+#include "elrom/scene/simulation.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace elrom::lammps {
@@ -156,13 +156,114 @@ TEST_F(Engine, KnowsForcesWallsSizesSpinsAndPeriods) {
         << column;
 }
 
+// A large sphere that meets a small one and throws it ahead, 1.8 times as fast as any was before.
+constexpr const char* throws = R"(
+[scene]
+duration = 0.01
+time_step = 1e-3
+[effects]
+collisions = "helscm"
+[collisions]
+restitution = 1
+stiffness = 5000
+[[regions]]
+name = "behind"
+low = [0, 0, 0]
+high = [0.0035, 0.0035, 0.0035]
+[[regions]]
+name = "ahead"
+low = [0.005, 0.001, 0.001]
+high = [0.0065, 0.0025, 0.0025]
+[[particles]]
+group = "large"
+region = "behind"
+diameter = "3 mm"
+number = 1
+arrangement = "lattice"
+velocity = [1, 0, 0]
+[[particles]]
+group = "small"
+region = "ahead"
+diameter = "0.9 mm"
+number = 1
+arrangement = "lattice"
+)";
+
+// In this process, beside the native engine, to the end.
+struct Both {
+  explicit Both(const scene::SceneSettings& settings)
+      : native(settings, 1), shared(settings, 1, this_process().movers(settings)) {
+    for (auto* simulation : {&native, &shared})
+      while (!simulation->done()) simulation->step();
+    shared.gather();
+  }
+  // MPI cannot begin twice.
+  static Processes& this_process() {
+    static Processes processes;
+    return processes;
+  }
+  void expect_alike(double tolerance) const {
+    const auto &a = shared.state(), &b = native.state();
+    EXPECT_EQ(a.tally.collisions, b.tally.collisions);
+    EXPECT_EQ(a.tally.wall_hits, b.tally.wall_hits);
+    ASSERT_EQ(a.particles.id, b.particles.id);
+    for (std::size_t i = 0; i < a.particles.size(); ++i) {
+      const auto apart = native.domain().images().nearest(scene::get(a.particles.place, i) -
+                                                          scene::get(b.particles.place, i));
+      EXPECT_LT(std::sqrt(scene::dot(apart, apart)), tolerance) << "sphere " << i;
+    }
+  }
+  scene::Simulation native, shared;
+};
+
+TEST(LammpsProcesses, FollowsSpheresThatBecomeFasterThanAnyWas) {
+  const Both both(scene::parse_scene(throws, "scene"));
+
+  EXPECT_EQ(both.native.state().tally.collisions, 1);
+  EXPECT_GT(greatest_speed_of(both.native.state().particles), 1.5);
+  both.expect_alike(1e-12);
+}
+
+TEST(LammpsProcesses, MeetsASphereOnceThatIsNearOnTwoSidesOfAPeriod) {
+  auto settings = scene::parse_scene(duct, "scene", {"scene.duration=0.006"});
+  settings.boxes[0].high = {0.0015, 0.0015, 0.003};
+  settings.groups[0].number = 12;
+
+  const Both both(settings);
+
+  EXPECT_GT(both.native.state().tally.collisions, 10);
+  both.expect_alike(1e-7);
+}
+
+TEST(LammpsProcesses, CountsWhatIsPressedOnAWallOnce) {
+  auto settings = scene::parse_scene(
+      duct, "scene", {"scene.time_step=0.005", "scene.duration=0.2", "walls.normal_restitution=0.3"});
+  settings.groups[0].number = 1;
+
+  const Both both(settings);
+
+  EXPECT_GT(both.native.state().tally.wall_hits, 0);
+  both.expect_alike(1e-9);
+}
+
+TEST(LammpsProcesses, MovesNoSphereAndOneAtRest) {
+  for (const int number : {0, 1}) {
+    auto settings = scene::parse_scene(duct, "scene", {"effects.gravity=[0, 0, 0]", "effects.drag=none"});
+    settings.groups[0].number = number, settings.groups[0].scatter = 0, settings.groups[0].velocity = {};
+
+    const Both both(settings);
+
+    EXPECT_EQ(both.shared.state().particles.size(), static_cast<std::size_t>(number));
+    both.expect_alike(1e-15);
+  }
+}
+
 TEST(LammpsProcesses, RefusesWhatItCannotDo) {
-  Processes processes;
   // Of the duct with another line for its spheres, and another setting.
   const auto refusal = [&](const std::string& line,
                            const std::vector<std::string>& changes = {}) -> std::string {
     try {
-      (void)processes.movers(scene::parse_scene(duct + line, "scene", changes));
+      (void)Both::this_process().movers(scene::parse_scene(duct + line, "scene", changes));
     } catch (const UsageError& error) {
       return error.what();
     }
