@@ -6,8 +6,8 @@
 
 namespace elrom::benchmark {
 
-/// A row for each number of processes: seconds of the clock, collisions, kinetic energy. Null, and a line that
-/// says so, where this build has no LAMMPS. @param scene TOML
+/// A row for each number of processes: seconds of the clock, collisions, kinetic energy. Null, and a line
+/// that says so, where this build has no LAMMPS. @param scene TOML
 [[nodiscard]] nlohmann::ordered_json by_lammps(const std::string& scene);
 
 }  // namespace elrom::benchmark
