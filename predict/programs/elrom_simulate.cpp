@@ -176,8 +176,8 @@ int simulate_with_lammps(SimulateOptions options) {
 }
 #else
 int simulate_with_lammps(const SimulateOptions&) {
-  throw NotBuiltError({.what = "--engine lammps needs LAMMPS and MPI, which this build left out",
-                       .advice = "install liblammps-dev and build again, or run without --engine"});
+  throw NotBuiltError(Problem{.what = "--engine lammps needs LAMMPS and MPI, which this build left out",
+                              .advice = "install liblammps-dev and build again, or run without --engine"});
 }
 #endif
 
