@@ -117,6 +117,21 @@ TEST(Auto, BlendsErrorsThatCancel) {
   EXPECT_EQ(fit.model->kind(), "blend");
 }
 
+TEST(Auto, TheBestAloneIsJudgedByOtherFoldsAsABlendIs) {
+  // Without case 0 "one" is best, and far off there; by all cases another one is. Judged by its own choice
+  // the latter would seem better than any blend, which those of case 0 let err with "one".
+  Contest contest;
+  MatrixF errors = noise(contest.data, "a", 0.1);
+  errors.row(0) *= 10;
+  const Fake one("one", errors), two("two", noise(contest.data, "b", 0.15)),
+      three("three", noise(contest.data, "c", 0.15));
+
+  const AutoFit fit = contest.run({&one, &two, &three});
+
+  EXPECT_EQ(fit.candidates[0].mean_weight(), 0);
+  EXPECT_NEAR(fit.candidates[1].mean_weight(), 0.5, 0.1);
+}
+
 TEST(Auto, DoesNotBlendForTheSakeOfOneCase) {
   // "two" cancels the error of "one" in case 0, where both are far off, and is worse in all the others:
   // weights fitted to all cases would gain a third, weights learned without case 0 do not see it.

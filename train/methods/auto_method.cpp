@@ -110,18 +110,16 @@ class Contest {
     MatrixD total = products_.front();
     for (std::size_t k = 1; k < products_.size(); ++k) total += products_[k];
     const MatrixXd gram = gram_of(total);
-    Index best = 0;
-    gram.diagonal().minCoeff(&best);
-    const VectorXd alone = VectorXd::Unit(gram.rows(), best);
 
-    // Weights fitted to the errors that they are judged by flatter a blend; those of the other folds do not.
-    Answer answer = judged({alone, std::vector<MatrixXd>(products_.size(), alone)});
-    Answer blend{weights_of(gram)}, by_band{band_weights(total, 0, options.band_edges)};
+    // What is chosen or fitted by the errors that it is judged by is flattered: the other folds choose.
+    Answer answer{alone(gram)}, blend{weights_of(gram)}, by_band{band_weights(total, 0, options.band_edges)};
     for (std::size_t k = 0; k < products_.size(); ++k) {
       const MatrixD others = total - products_[k];
+      answer.of_folds.emplace_back(alone(gram_of(others)));
       blend.of_folds.emplace_back(weights_of(gram_of(others)));
       by_band.of_folds.push_back(band_weights(others, folds_[k].size(), options.band_edges));
     }
+    answer = judged(std::move(answer));
     const bool has_bands = by_band.weights.cols() > 1;
     answer = moved(answer, judged(std::move(blend)), options.full_gain);
     by_band = judged(std::move(by_band));
@@ -163,6 +161,12 @@ class Contest {
     return judged(std::move(answer));
   }
 
+  /// All weight to the best candidate.
+  [[nodiscard]] static VectorXd alone(const MatrixXd& gram) {
+    Index best = 0;
+    gram.diagonal().minCoeff(&best);
+    return VectorXd::Unit(gram.rows(), best);
+  }
   [[nodiscard]] static VectorXd weights_of(const MatrixXd& gram) {
     const std::vector<double> weights = blend_weights(gram);
     return without_negligible(VectorXd::Map(weights.data(), gram.rows()));

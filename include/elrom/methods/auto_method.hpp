@@ -16,7 +16,7 @@ namespace elrom::methods {
 struct AutoOptions {
   std::size_t n_folds = 8;
   /// A blend is taken as far as it gains. From this gain on, wholly: the share of the best member's error
-  /// that a blend whose weights are learned without a fold saves in it; half way for half of it. The same for
+  /// that a blend saves in a fold, both chosen by the other folds; half way for half of it. The same for
   /// weights of each band against those of the whole field. A limit that a gain must pass would turn the
   /// model over where a gain lies near it, and another machine's rounding moves gains by a tenth.
   double full_gain = 0.005;
