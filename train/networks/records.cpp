@@ -200,7 +200,9 @@ std::vector<double> gp_relevance(const MatrixD& inputs, const Eigen::MatrixXd& c
       (components.colwise().squaredNorm() / static_cast<double>(components.rows())).cwiseSqrt();
   const double rounding = 1e-6 * scale.maxCoeff();
   const auto inverse = scale.unaryExpr([&](double s) { return s > rounding ? 1 / s : 0; });
-  const auto gp = math::fit_gp(inputs, components * inverse.asDiagonal(), {.start_lengths = {5.0}});
+  // Of components that inputs explain without noise the last bits would decide, but for some noise.
+  const auto gp = math::fit_gp(inputs, components * inverse.asDiagonal(),
+                               {.start_lengths = {5.0}, .highest_signal = 100, .lowest_noise = 1e-6});
   std::vector<double> relevance;
   for (const double length : gp.length_scales) relevance.push_back(1 / length);
   return relative_relevance(std::move(relevance));
