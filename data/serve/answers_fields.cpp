@@ -130,7 +130,7 @@ http::Response get(Desk& desk, const Ask& ask) {
 }
 
 /// The file is read here only after a process of its own has read it, when it came.
-http::Response cut(Desk& desk, const Ask& ask) {
+http::Response cut_fields(Desk& desk, const Ask& ask) {
   const auto& digest = kept_digest(desk, ask);
   const auto model = open_model(desk);
   const auto wanted = cut_in_query(ask, model->cuts());
@@ -168,7 +168,7 @@ std::vector<Route> field_routes() {
                       "GET /mesh/cut; `fields` is null when it is on another mesh",
            .answers = {{200, "a JSON header and the numbers, framed as POST /predictions does"},
                        {400, "no such cut"}},
-           .answer = cut,
+           .answer = cut_fields,
            .query = {{"axis", "x, y or z"}, {"at", "where on it [m]"}},
            .media = {"application/octet-stream"}},
           {.method = "PUT",

@@ -109,7 +109,7 @@ Cut cut_of(const Cuts& cuts, const std::string& axis, double at, const std::stri
       .expected = base::rounded(cuts.low()[i_axis]) + " to " + base::rounded(cuts.high()[i_axis]) + " m"});
 }
 
-http::Response cut(Desk& desk, const Ask& ask) {
+http::Response cut_mesh(Desk& desk, const Ask& ask) {
   const auto model = open_model(desk);
   const auto wanted = cut_in_query(ask, model->cuts());
   const auto tag = "\"" + model->bundle().mesh_digest() + "\"";
@@ -266,7 +266,7 @@ std::vector<Route> model_routes() {
              "a JSON header and the numbers, as POST /predictions answers with application/octet-stream"},
             {400, "no such cut"},
             {404, "there is no model yet"}},
-       .answer = cut,
+       .answer = cut_mesh,
        .query = {{"axis", "x, y or z"}, {"at", "where on it [m]"}},
        .media = {"application/octet-stream"},
        .tagged = true},

@@ -32,7 +32,7 @@ double lease_in(const JsonBody& body) {
       Problem{.what = "wrong lease_s", .found = body.at("lease_s").dump(), .expected = "1 to 604800 s"});
 }
 
-http::Response add(Desk& desk, const Ask& ask) {
+http::Response add_run(Desk& desk, const Ask& ask) {
   const JsonBody body(ask.request.body, {"scenario", "model", "sources"});
   const auto model = model_in(body);
   const auto scenario = body.whole("scenario");
@@ -50,7 +50,7 @@ http::Response add(Desk& desk, const Ask& ask) {
   });
 }
 
-http::Response list(Desk& desk, const Ask& ask) {
+http::Response list_runs(Desk& desk, const Ask& ask) {
   const auto part = part_of(ask);
   RunFilter filter{.model = ask.target.value("model").value_or("")};
   if (const auto scenario = ask.target.value("scenario")) filter.scenario = number_in(*scenario, "scenario");
@@ -64,7 +64,7 @@ http::Response list(Desk& desk, const Ask& ask) {
   return json_response(list_document(std::move(items), part));
 }
 
-http::Response one(Desk& desk, const Ask& ask) {
+http::Response one_run(Desk& desk, const Ask& ask) {
   Run run;
   desk.repository.read([&](Transaction& transaction) { run = transaction.run(id_of(ask)); });
   return tagged_response(ask, document_of(run), tag_of(run));
@@ -149,7 +149,7 @@ std::vector<Route> run_routes() {
        .role = Role::reader,
        .summary = "Work of the models, oldest first",
        .answers = {{200, "a part of the list"}, {400, "a query that is none"}},
-       .answer = list,
+       .answer = list_runs,
        .query = {{"model", "Of this model"},
                  {"scenario", "Of this scenario"},
                  {"state", "In this state: waiting, running, done, failed, quarantined"},
@@ -161,7 +161,7 @@ std::vector<Route> run_routes() {
        .summary =
            "Asks for a model's work on a scenario's present inputs; `sources`: results that it builds on",
        .answers = {{201, "it waits"}},
-       .answer = add,
+       .answer = add_run,
        .body = BodyKind::json,
        .example = R"({"scenario": 1, "model": "elrom", "sources": []})",
        .wrong = R"({"scenario": 999999, "model": "elrom", "sources": []})",
@@ -172,7 +172,7 @@ std::vector<Route> run_routes() {
        .role = Role::reader,
        .summary = "One run",
        .answers = {{200, "it"}},
-       .answer = one,
+       .answer = one_run,
        .tagged = true},
       {.method = "POST",
        .path = "/claims",

@@ -67,7 +67,7 @@ Answer answer_with(const Scenario& scenario, int status) {
           .place = "/scenarios/" + std::to_string(scenario.id)};
 }
 
-http::Response add(Desk& desk, const Ask& ask) {
+http::Response add_scenario(Desk& desk, const Ask& ask) {
   return write_scenario(desk, ask, [](Transaction& transaction, Scenario scenario) {
     return answer_with(transaction.add(std::move(scenario)), 201);
   });
@@ -93,7 +93,7 @@ http::Response change(Desk& desk, const Ask& ask) {
   });
 }
 
-http::Response list(Desk& desk, const Ask& ask) {
+http::Response list_scenarios(Desk& desk, const Ask& ask) {
   const auto part = part_of(ask);
   Json items;
   desk.repository.read([&](Transaction& transaction) {
@@ -103,7 +103,7 @@ http::Response list(Desk& desk, const Ask& ask) {
   return json_response(list_document(std::move(items), part));
 }
 
-http::Response one(Desk& desk, const Ask& ask) {
+http::Response one_scenario(Desk& desk, const Ask& ask) {
   Scenario scenario;
   desk.repository.read([&](Transaction& transaction) { scenario = transaction.scenario(id_of(ask)); });
   return tagged_response(ask, document_of(scenario), tag_of(scenario));
@@ -153,7 +153,7 @@ std::vector<Route> scenario_routes() {
        .role = Role::reader,
        .summary = "Operating points, oldest first",
        .answers = {{200, "a part of the list; `next` goes on"}, {400, "a query that is none"}},
-       .answer = list,
+       .answer = list_scenarios,
        .query = list_query},
       {.method = "POST",
        .path = "/scenarios",
@@ -163,7 +163,7 @@ std::vector<Route> scenario_routes() {
        .answers = {{201, "kept; `verdict` marks what lies outside the trained range"},
                    {409, "the name is taken, or the key was used for another request"},
                    {422, "no furnace can have it, or it is no scenario; the first is in quarantine"}},
-       .answer = add,
+       .answer = add_scenario,
        .body = BodyKind::json,
        .example = example,
        .wrong = wrong,
@@ -174,7 +174,7 @@ std::vector<Route> scenario_routes() {
        .role = Role::reader,
        .summary = "One operating point",
        .answers = {{200, "it"}},
-       .answer = one,
+       .answer = one_scenario,
        .tagged = true},
       {.method = "PUT",
        .path = "/scenarios/{id}",

@@ -40,7 +40,7 @@ Json document_of(const study::Versions& versions, int number) {
   return document;
 }
 
-http::Response list(Desk& desk, const Ask& /*ask*/) {
+http::Response list_versions(Desk& desk, const Ask& /*ask*/) {
   const auto versions = versions_of(desk);
   Json items = Json::array();
   for (const int number : versions.numbers()) items.push_back(document_of(versions, number));
@@ -56,7 +56,7 @@ std::filesystem::path file_of(const study::Versions& versions, repository::Id nu
       .what = "no such version", .found = std::to_string(number), .expected = base::join(known, ", ")});
 }
 
-http::Response one(Desk& desk, const Ask& ask) {
+http::Response one_version(Desk& desk, const Ask& ask) {
   const auto versions = versions_of(desk);
   const auto number = id_of(ask);
   const model::BundleReader bundle(file_of(versions, number));
@@ -127,13 +127,13 @@ std::vector<Route> version_routes() {
            .role = Role::reader,
            .summary = "Versions of the study's model: what made each, and what the gate said",
            .answers = {{200, "all of them"}, {404, "it is no study's model that answers"}},
-           .answer = list},
+           .answer = list_versions},
           {.method = "GET",
            .path = "/models/{id}",
            .role = Role::reader,
            .summary = "One version: its errors, settings and origin",
            .answers = {{200, "it"}},
-           .answer = one},
+           .answer = one_version},
           {.method = "POST",
            .path = "/models/{id}/report",
            .role = Role::reader,
