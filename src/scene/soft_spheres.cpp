@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contact_force.hpp"
 #include "elrom/base/parallel.hpp"
@@ -232,8 +233,8 @@ class SoftSpheres final : public Mover {
       blocks_[block].contacts.clear();
       for (std::size_t i = first; i < last; ++i) contacts_of(p, i, h, blocks_[block].contacts);
     });
-    force_.assign(p.size(), {});
-    if (rough) moment_.assign(p.size(), {});
+    force_.resize(p.size());  // kick() leaves them at zero
+    if (rough) moment_.resize(p.size());
     for (const auto& block : blocks_)
       for (const auto& contact : block.contacts) {
         const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
@@ -334,18 +335,39 @@ class SoftSpheres final : public Mover {
     wall_contacts_.push_back(contact);
   }
 
+  // What neither forces nor walls push flies on, but for spheres in contact.
+  void kick_touching(Particles& p, double h) {
+    double fastest = fastest_ * fastest_;
+    for (const auto& block : blocks_)
+      for (const auto& contact : block.contacts)
+        for (const auto k : {contact.i, contact.j})
+          fastest = std::max(fastest, kick_one(p, static_cast<std::size_t>(k), h));
+    fastest_ = std::sqrt(fastest);
+  }
+  // @return its speed, squared
+  double kick_one(Particles& p, std::size_t i, double h) {
+    const double share = h / p.mass[i];
+    const Vec v = get(p.velocity, i) + share * std::exchange(force_[i], {});
+    set(p.velocity, i, v);
+    if constexpr (rough)
+      set(p.spin, i, get(p.spin, i) + (2.5 * share / balls_[i].radius) * std::exchange(moment_[i], {}));
+    return dot(v, v);
+  }
+
   void kick(State& state, double h) {
     auto& p = state.particles;
+    if (state.push[0].empty() && reflects()) return kick_touching(p, h);
     const bool pushed = !state.push[0].empty();
     for_blocks(p.size(), [&](std::size_t block, std::size_t first, std::size_t last) {
       double fastest = 0;
       for (std::size_t i = first; i < last; ++i) {
-        const double share = h / p.mass[i];
-        Vec v = get(p.velocity, i) + share * force_[i];
-        if (pushed) v += h * get(state.push, i);
-        set(p.velocity, i, v);
-        fastest = std::max(fastest, dot(v, v));
-        if constexpr (rough) set(p.spin, i, get(p.spin, i) + (2.5 * share / balls_[i].radius) * moment_[i]);
+        double squared = kick_one(p, i, h);
+        if (pushed) {
+          const Vec v = get(p.velocity, i) + h * get(state.push, i);
+          set(p.velocity, i, v);
+          squared = dot(v, v);
+        }
+        fastest = std::max(fastest, squared);
       }
       blocks_[block].fastest = fastest;
     });
