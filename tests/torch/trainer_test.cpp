@@ -74,6 +74,18 @@ TEST(TorchTrainer, LearnsASmoothFunction) {
   EXPECT_FALSE(result.diverged);
 }
 
+TEST(TorchTrainer, DropoutCostsSomeOfTheFitButNotAllOfIt) {
+  const auto problem = smooth_problem();
+  auto dropping = usual;
+  dropping.dropout = 0.3;
+
+  const auto with = make_torch_trainer()->train(problem, dropping, {60, 60}, base::Seed(1), nullptr, {}),
+             without = make_torch_trainer()->train(problem, usual, {60, 60}, base::Seed(1), nullptr, {});
+
+  EXPECT_GT(with.train_mse, 1.5 * without.train_mse);
+  EXPECT_LT(with.train_mse, 0.2 * problem.train_targets.array().square().mean());
+}
+
 TEST(TorchTrainer, GoesOnFromTheWeightsItIsGiven) {
   auto problem = smooth_problem();
   const auto trainer = make_torch_trainer();
