@@ -90,8 +90,10 @@ std::string input(const SceneSettings& s, const Path& folder, const LiggghtsRun&
 
 rusage run_input(const Path& program, const Path& folder, const std::string& text) {
   base::write_text(folder / "input", text);
-  return run_program(
-      program, {"-in", (folder / "input").string(), "-screen", "none", "-log", (folder / "log").string()});
+  // In its folder: stopped by a signal, it leaves a restart file where it runs.
+  return run_program("/usr/bin/env",
+                     {"--chdir=" + folder.string(), program.string(), "-in", (folder / "input").string(),
+                      "-screen", "none", "-log", (folder / "log").string()});
 }
 
 double energy_of(const Path& log) {
