@@ -49,12 +49,13 @@ CellGrid::CellGrid(const Domain& domain, const Vec& size) {
   }
   find_hosts();
   for (std::size_t a = 0; a < 3; ++a) {
-    faces_[a].assign(n + n / count_[a], 0);
-    for (std::size_t c = 0; c < n; ++c) {
-      const auto before = neighbour(c, a, -1);
-      if (before != none && is_open(c) && is_open(static_cast<std::size_t>(before)))
-        faces_[a][face(c, a, -1)] = 1;
-    }
+    faces_[a].assign(n + n / count_[a], beyond);
+    for (std::size_t c = 0; c < n; ++c)
+      for (const int side : {-1, 1}) {
+        const auto other = neighbour(c, a, side);
+        const bool both = other != none && is_open(static_cast<std::size_t>(other));
+        if (is_open(c)) faces_[a][face(c, a, side)] = both ? inside : wall;
+      }
   }
 }
 
@@ -168,34 +169,34 @@ Shares CellGrid::cells(const Vec& place) const {
   std::array<Along, 3> a;
   for (std::size_t k = 0; k < 3; ++k) a[k] = along(x[k], low_[k], step_[k], 0.5);
   const auto node = [&](const std::array<std::int64_t, 3>& at) -> std::int32_t {
-    Index inside;
+    Index of;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto n = static_cast<std::int64_t>(count_[k]);
       if (!periodic_[k] && (at[k] < 0 || at[k] >= n)) return none;
-      inside[k] = static_cast<std::size_t>((at[k] % n + n) % n);
+      of[k] = static_cast<std::size_t>((at[k] % n + n) % n);
     }
-    const auto c = cell(inside);
+    const auto c = cell(of);
     return is_open(c) ? static_cast<std::int32_t>(c) : none;
   };
   return shares_of(a, node, static_cast<std::int32_t>(cell_at(place)));
 }
 
-Shares CellGrid::faces(const Vec& place, std::size_t axis) const {
+Shares CellGrid::faces(const Vec& place, std::size_t axis, std::uint8_t least) const {
   const auto x = array_of(place);
   std::array<Along, 3> a;
   for (std::size_t k = 0; k < 3; ++k) a[k] = along(x[k], low_[k], step_[k], k == axis ? 0 : 0.5);
   const auto node = [&](const std::array<std::int64_t, 3>& at) -> std::int32_t {
-    Index inside;
-    bool beyond = false;  // in the layer behind the grid's high end
+    Index of;
+    bool is_last = false;  // in the layer behind the grid's high end
     for (std::size_t k = 0; k < 3; ++k) {
       const auto n = static_cast<std::int64_t>(count_[k]);
       const bool high_end = k == axis && at[k] == n;
       if (!periodic_[k] && (at[k] < 0 || (at[k] >= n && !high_end))) return none;
-      beyond = beyond || (high_end && !periodic_[k]);
-      inside[k] = static_cast<std::size_t>(high_end && !periodic_[k] ? n - 1 : (at[k] % n + n) % n);
+      is_last = is_last || (high_end && !periodic_[k]);
+      of[k] = static_cast<std::size_t>(high_end && !periodic_[k] ? n - 1 : (at[k] % n + n) % n);
     }
-    const auto f = face(cell(inside), axis, beyond ? 1 : -1);
-    return is_face_open(axis, f) ? static_cast<std::int32_t>(f) : none;
+    const auto f = face(cell(of), axis, is_last ? 1 : -1);
+    return faces_[axis][f] >= least ? static_cast<std::int32_t>(f) : none;
   };
   return shares_of(a, node, static_cast<std::int32_t>(face(cell_at(place), axis, -1)));
 }

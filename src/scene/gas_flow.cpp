@@ -17,9 +17,9 @@ constexpr std::int32_t none = CellGrid::none;
 
 }  // namespace
 
-// A face through which gas may go, with all that its equation reads.
+// A face of an open cell, with all that its equation reads. A wall is an inlet that lets nothing in.
 struct GasFlow::Face {
-  enum class Kind : std::uint8_t { inside, inlet, outlet };
+  enum class Kind : std::uint8_t { inside, inlet, outlet, wall };
   Kind kind;
   std::size_t axis, number;
   std::int32_t low, high;                             // cells; none: outside
@@ -29,6 +29,7 @@ struct GasFlow::Face {
   std::array<std::array<std::int32_t, 4>, 3> cross;   // faces across the other axes
   double inflow = 0;                                  // of an inlet: superficial, along the axis, m/s
 
+  [[nodiscard]] bool is_given() const { return kind == Kind::inlet || kind == Kind::wall; }  // its velocity
   [[nodiscard]] std::size_t inner() const { return static_cast<std::size_t>(low == none ? high : low); }
 };
 
@@ -49,7 +50,7 @@ GasFlow::GasFlow(const Domain& domain, std::shared_ptr<CellGrid> grid, const par
     velocity_[a].assign(grid_->face_count(a), 0), mean_[a] = before_[a] = hold_[a] = flux_[a] = velocity_[a];
   find_faces(domain, inlets);
   scale_inlets(domain, inlets);
-  entry_.assign(static_cast<std::size_t>(std::ranges::count(faces_, Face::Kind::inlet, &Face::kind)), 0);
+  held_.assign(static_cast<std::size_t>(std::ranges::count_if(faces_, &Face::is_given)), 0);
   equation_ = std::make_unique<Equation>(Equation{CellEquation(*grid_), make_eigen_solver(*grid_)});
 }
 GasFlow::~GasFlow() = default;
@@ -101,14 +102,13 @@ void GasFlow::find_faces(const Domain& domain, const std::vector<GasInlet>& inle
           continue;
         }
         const auto what = beyond(domain, inlets, g, c, a, side);
-        if (!what.is_outlet && what.inlet == nullptr) continue;
-        has_outlets = has_outlets || what.is_outlet;
-        Face face{what.is_outlet ? Face::Kind::outlet : Face::Kind::inlet, a, number, side < 0 ? none : me,
-                  side < 0 ? me : none};
+        Face face{Face::Kind::wall, a, number, side < 0 ? none : me, side < 0 ? me : none};
         if (what.inlet != nullptr) face.inflow = array_of(what.inlet->velocity)[a];
-        if (face.kind == Face::Kind::inlet && face.inflow == 0) continue;  // a wall that moves
+        if (face.inflow != 0) face.kind = Face::Kind::inlet;
+        if (what.is_outlet) face.kind = Face::Kind::outlet;
+        has_outlets = has_outlets || what.is_outlet;
         has_inlets = has_inlets || face.kind == Face::Kind::inlet;
-        grid_->open_face(a, number);
+        if (face.kind != Face::Kind::wall) grid_->open_face(a, number);
         faces_.push_back(face);
       }
   if (has_inlets && !has_outlets)
@@ -206,17 +206,17 @@ void GasFlow::advance(double dt, const GasLoad& load) {
     left -= h;
     ++n_steps_;
   }
-  find_entry(load);
+  find_held(load);
   look(load);
 }
 
-void GasFlow::find_entry(const GasLoad& load) {
-  entry_.clear();
+void GasFlow::find_held(const GasLoad& load) {
+  held_.clear();
   for (const auto& face : faces_) {
-    if (face.kind != Face::Kind::inlet) continue;
+    if (!face.is_given()) continue;
     const auto a = face.axis, f = face.number;
     const double drag = load.exchange[a][f] * velocity_[a][f] - load.exchange_flux[a][f];
-    entry_.push_back(force_[a] - drag / gap(face, load));
+    held_.push_back(force_[a] - drag / gap(face, load));
   }
 }
 
@@ -280,7 +280,7 @@ void GasFlow::foresee(double dt, const GasLoad& load) {
   for (std::size_t k = 0; k < faces_.size(); ++k) {
     const auto& face = faces_[k];
     const double eps = gap(face, load);
-    if (face.kind == Face::Kind::inlet) {
+    if (face.is_given()) {
       velocity_[face.axis][face.number] = face.inflow / eps;
       continue;
     }
@@ -291,7 +291,7 @@ void GasFlow::foresee(double dt, const GasLoad& load) {
     double change = 0, largest = 0;
     for (std::size_t n = 0; n < faces_.size(); ++n) {
       const auto k = sweep % 2 == 0 ? n : faces_.size() - 1 - n;
-      if (faces_[k].kind == Face::Kind::inlet) continue;
+      if (faces_[k].is_given()) continue;
       double& own = velocity_[faces_[k].axis][faces_[k].number];
       const double found = foreseen(faces_[k], around[k], dt, load);
       change = std::max(change, std::abs(found - own)), largest = std::max(largest, std::abs(found));
@@ -320,12 +320,11 @@ void GasFlow::project(const GasLoad& load) {
   for (const auto& face : faces_) {
     const auto a = face.axis, f = face.number;
     const double eps = gap(face, load), area = grid_->volume() / grid_->step()[a];
-    // Solids pass no inlet.
-    const double solids = face.kind == Face::Kind::inlet ? 0 : load.solids_flux[a][f];
+    const double solids = face.is_given() ? 0 : load.solids_flux[a][f];  // none pass inlets and walls
     const double flux = area * (eps * velocity_[a][f] + solids);
     if (face.low != none) equation.right[static_cast<std::size_t>(face.low)] -= flux;
     if (face.high != none) equation.right[static_cast<std::size_t>(face.high)] += flux;
-    if (face.kind == Face::Kind::inlet) continue;
+    if (face.is_given()) continue;
     const double conductance = area * eps * eps / (hold_[a][f] * grid_->step()[a]);
     if (face.kind == Face::Kind::inside)
       equation.conductance[a][f] = conductance;
@@ -336,7 +335,7 @@ void GasFlow::project(const GasLoad& load) {
   solver->solve(equation, correction_, tolerance);
   for (std::size_t c = 0; c < pressure_.size(); ++c) pressure_[c] += correction_[c];
   for (const auto& face : faces_) {
-    if (face.kind == Face::Kind::inlet) continue;
+    if (face.is_given()) continue;
     const auto a = face.axis, f = face.number;
     velocity_[a][f] -= gap(face, load) / hold_[a][f] * drop(face, correction_);
   }
@@ -345,11 +344,9 @@ void GasFlow::project(const GasLoad& load) {
 FaceValues GasFlow::pressure_gradient() const {
   FaceValues gradient;
   for (std::size_t a = 0; a < 3; ++a) gradient[a].assign(grid_->face_count(a), 0);
-  auto entry = entry_.begin();
-  for (const auto& face : faces_) {
-    const bool is_inlet = face.kind == Face::Kind::inlet;
-    gradient[face.axis][face.number] = is_inlet ? *entry++ : drop(face, mean_pressure_);
-  }
+  auto held = held_.begin();
+  for (const auto& face : faces_)
+    gradient[face.axis][face.number] = face.is_given() ? *held++ : drop(face, mean_pressure_);
   return gradient;
 }
 
@@ -361,12 +358,11 @@ void GasFlow::look(const GasLoad& load) {
   for (const auto& face : faces_) {
     const double area = grid_->volume() / grid_->step()[face.axis];
     const double gas = area * gap(face, load) * velocity_[face.axis][face.number];
-    const bool is_inlet = face.kind == Face::Kind::inlet;
-    const double flux = gas + (is_inlet ? 0 : area * load.solids_flux[face.axis][face.number]);
+    const double flux = gas + (face.is_given() ? 0 : area * load.solids_flux[face.axis][face.number]);
     if (face.low != none) sum[static_cast<std::size_t>(face.low)] += flux;
     if (face.high != none) sum[static_cast<std::size_t>(face.high)] -= flux;
     largest = std::max(largest, std::abs(flux));
-    if (is_inlet) flow_in_ += face.low == none ? gas : -gas;
+    if (face.kind == Face::Kind::inlet) flow_in_ += face.low == none ? gas : -gas;
     if (face.kind == Face::Kind::outlet) flow_out_ += face.low == none ? -gas : gas;
   }
   double most = 0;
@@ -395,7 +391,7 @@ std::size_t GasFlow::bytes() const {
 void GasFlow::save(io::TensorFile& file) const {
   file.set("gas_pressure", io::Tensor::copy(pressure_, {pressure_.size()}));
   file.set("gas_mean_pressure", io::Tensor::copy(mean_pressure_, {mean_pressure_.size()}));
-  file.set("gas_inlet_gradient", io::Tensor::copy(entry_, {entry_.size()}));
+  file.set("gas_held_gradient", io::Tensor::copy(held_, {held_.size()}));
   for (std::size_t a = 0; a < 3; ++a)
     file.set("gas_velocity_" + std::string(1, "xyz"[a]),
              io::Tensor::copy(velocity_[a], {velocity_[a].size()}));
@@ -411,7 +407,7 @@ void GasFlow::load(const io::TensorFile& file) {
   };
   read("gas_pressure", pressure_);
   read(file.has("gas_mean_pressure") ? "gas_mean_pressure" : "gas_pressure", mean_pressure_);
-  if (file.has("gas_inlet_gradient")) read("gas_inlet_gradient", entry_);
+  if (file.has("gas_held_gradient")) read("gas_held_gradient", held_);
   for (std::size_t a = 0; a < 3; ++a) read("gas_velocity_" + std::string(1, "xyz"[a]), velocity_[a]);
 }
 

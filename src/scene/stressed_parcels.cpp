@@ -91,7 +91,7 @@ class StressedParcels final : public Mover {
     for (std::size_t a = 0; a < 3; ++a) {
       std::ranges::fill(flux_[a], 0);
       for (std::size_t i = 0; i < p.size(); ++i) {
-        const auto shares = grid_.faces(get(p.place, i), a);
+        const auto shares = grid_.open_faces(get(p.place, i), a);
         for (std::size_t k = 0; k < 8; ++k) {
           const double volume = shares.weight[k] * p.volume(i) * per_volume;
           flux_[a][static_cast<std::size_t>(shares.of[k])] += volume * p.velocity[a][i];

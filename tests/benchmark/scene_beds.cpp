@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <ctime>
-#include <functional>
 #include <numeric>
 
 #include "elrom/scene/simulation.hpp"
@@ -15,10 +14,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace elrom::scene;
 
-// Means over time of what holds a bed up. Pressures in Pa, forces upwards in N. In a layer of height dz and
-// area A the gas loses A dp = weight + dM - walls: M is the flux of vertical momentum that solids and gas
-// carry by moving, up or down. A bed that is thrown up where it is narrow and falls back where it is wide
-// loses more than its weight.
+// Means over time of what holds a bed up. Pressures in Pa, forces upwards in N. Through a layer of faces of
+// area A the gas loses A dp = lift + dM and the solids take lift = weight + dM - walls, each M the flux of
+// vertical momentum that it carries by moving, up or down. Forces are spread over faces as the gas does it:
+// the area that counts is the one that gas goes through. A bed that is thrown up where it is narrow and falls
+// back where it is wide loses more than its weight.
 class Balance {
  public:
   Balance(const Simulation& simulation, double from)
@@ -26,12 +26,21 @@ class Balance {
     const auto& grid = simulation.flow()->grid();
     in_layer_ = grid.count()[0] * grid.count()[1];
     for (auto* values : {&area_, &layer_pressure_, &layer_head_, &layer_mass_, &layer_momentum_, &layer_flux_,
-                         &layer_gas_flux_, &layer_lift_})
+                         &layer_gas_flux_})
       values->assign(grid.count()[2], 0);
     for (std::size_t c = 0; c < grid.size(); ++c)
       if (grid.is_open(c)) area_[c / in_layer_] += grid.space(c) / grid.step()[2];
+    face_area_.assign(grid.face_count(2), 0);
+    std::vector<double> of_layer(grid.count()[2] + 1, 0);
+    const double face = grid.step()[0] * grid.step()[1];
+    for (std::size_t f = 0; f < face_area_.size(); ++f)
+      if (grid.is_face_open(2, f)) of_layer[f / in_layer_] += face;
+    for (std::size_t f = 0; f < face_area_.size(); ++f)
+      if (grid.is_face_open(2, f)) face_area_[f] = of_layer[f / in_layer_];
   }
 
+  // Before a step: forces act there.
+  void look_ahead() { ahead_ = simulation_.state().particles; }
   // After a step.
   void look() {
     const auto& s = simulation_.state();
@@ -54,9 +63,9 @@ class Balance {
     return {{"pressure_drop_pa", mean(pressure_)},
             {"weight_per_area_pa", mean(head_)},
             {"dp_error", pressure_ / head_ - 1},
-            {"solids_acceleration_pa", mean(acceleration(layer_flux_, 0))},
+            {"gas_carries_pa", mean(carried_)},
             {"gas_acceleration_pa", mean(acceleration(layer_gas_flux_, inflow_))},
-            {"gas_carries_pa", mean(carried())},
+            {"solids_acceleration_pa", mean(acceleration(layer_flux_, 0))},
             {"gas_lifts_of_weight", lift_ / weight_},
             {"walls_lift_of_weight", (walls_ - lift_ + weight_) / weight_},
             {"mass_error", mass / mass_ - 1},
@@ -67,18 +76,16 @@ class Balance {
   [[nodiscard]] Json planes() const {
     const auto& grid = simulation_.flow()->grid();
     Json rows = Json::array();
-    double above = 0, carried = 0;
+    double above = 0;
     for (std::size_t k = area_.size(); k-- > 0;) {
-      const double own = layer_head_[k] / static_cast<double>(n_),
-                   lift = layer_lift_[k] / static_cast<double>(n_) / area_[k];
+      const double own = layer_head_[k] / static_cast<double>(n_);
       rows.push_back({{"z_m", grid.centre(k * in_layer_).z},
                       {"pressure_pa", layer_pressure_[k] / static_cast<double>(n_)},
                       {"weight_above_pa", above + 0.5 * own},
-                      {"carried_above_pa", carried + 0.5 * lift},
                       {"flux_pa", layer_flux_[k] / static_cast<double>(n_)},
                       {"gas_flux_pa", layer_gas_flux_[k] / static_cast<double>(n_)},
                       {"solids_m_per_s", layer_mass_[k] > 0 ? layer_momentum_[k] / layer_mass_[k] : 0}});
-      above += own, carried += lift;
+      above += own;
     }
     return rows;
   }
@@ -97,14 +104,20 @@ class Balance {
       const double weight = p.mass[i] * g * (1 - gas / p.density[i]);
       const auto cell = grid.cell_at(get(p.place, i)), layer = cell / in_layer_;
       solids[cell] += p.mass[i] / p.density[i];
-      weight_ += weight;
       layer_head_[layer] += weight / area_[layer];
       layer_mass_[layer] += p.mass[i], layer_momentum_[layer] += p.mass[i] * p.velocity[2][i];
       layer_flux_[layer] += p.mass[i] * p.velocity[2][i] * p.velocity[2][i] / (area_[layer] * grid.step()[2]);
       head_ += weight / area_[layer];
-      if (i >= s.push[2].size()) continue;
-      const double lift = p.mass[i] * s.push[2][i] + weight;
-      lift_ += lift, layer_lift_[layer] += lift;
+    }
+    for (std::size_t i = 0; i < ahead_.size(); ++i) {
+      const double weight = ahead_.mass[i] * g * (1 - gas / ahead_.density[i]),
+                   lift = ahead_.mass[i] * s.push[2][i] + weight;
+      weight_ += weight, lift_ += lift;
+      const auto shares = grid.faces(get(ahead_.place, i), 2);
+      for (std::size_t k = 0; k < 8; ++k) {
+        const double area = face_area_[static_cast<std::size_t>(shares.of[k])];
+        if (area > 0) carried_ += shares.weight[k] * lift / area;
+      }
     }
     const double inflow = simulation_.flow()->flow_in();
     inflow_ += gas * inflow * inflow / area_.front();
@@ -117,11 +130,7 @@ class Balance {
     }
   }
 
-  // Sums over time of what the gas carries, and of what accelerates solids, each over its layer's area.
-  [[nodiscard]] double carried() const {
-    return std::transform_reduce(layer_lift_.begin(), layer_lift_.end(), area_.begin(), 0.0, std::plus(),
-                                 std::divides());
-  }
+  // Sum over time of what a flux changes by from layer to layer, each over its area.
   // @param flux of each layer, over its area @param from what comes in below, N
   [[nodiscard]] double acceleration(const std::vector<double>& flux, double from) const {
     double sum = 0, below = from;
@@ -137,11 +146,12 @@ class Balance {
   const Simulation& simulation_;
   double from_, mass_, before_ = 0;
   std::size_t in_layer_ = 1;  // cells
-  std::vector<double> area_;  // of each layer of cells, m2
+  std::vector<double> area_, face_area_;  // of each layer of cells; of each face's layer, 0: a wall; m2
+  Particles ahead_;
   std::vector<double> layer_pressure_, layer_head_, layer_mass_, layer_momentum_, layer_flux_,
-      layer_gas_flux_, layer_lift_;  // sums over time
+      layer_gas_flux_;  // sums over time
   std::int64_t n_ = 0;
-  double pressure_ = 0, head_ = 0, weight_ = 0, lift_ = 0, walls_ = 0, inflow_ = 0;
+  double pressure_ = 0, head_ = 0, carried_ = 0, weight_ = 0, lift_ = 0, walls_ = 0, inflow_ = 0;
 };
 
 Json run_bed(const SceneSettings& settings, double from) {
@@ -149,6 +159,7 @@ Json run_bed(const SceneSettings& settings, double from) {
   Balance balance(simulation, from);
   const auto begin = std::clock();
   while (!simulation.done()) {
+    balance.look_ahead();
     simulation.step();
     balance.look();
   }

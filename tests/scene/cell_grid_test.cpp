@@ -49,6 +49,29 @@ TEST(SceneCellGrid, SharesAlwaysSumToOneAndNameOpenCells) {
   }
 }
 
+// What rests on a ledge is in no jet beside it.
+TEST(SceneCellGrid, GasStandsOnWalls) {
+  const Domain domain(
+      {test::box({}, {0.04, 0.04, 0.04}), test::box({0.01, 0.01, -0.02}, {0.03, 0.03, 0.001}, "nozzle")});
+  const CellGrid grid(domain, {0.005, 0.005, 0.005});
+  std::vector<double> upwards(grid.face_count(2), 0);
+  for (std::size_t f = 0; f < upwards.size(); ++f) upwards[f] = grid.is_face_open(2, f) ? 1 : 0;
+  const auto speed = [&](const Shares& shares) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 8; ++k)
+      sum += shares.weight[k] * upwards[static_cast<std::size_t>(shares.of[k])];
+    return sum;
+  };
+  const double ledge = 0.0075;  // the middle of the cells beside the nozzle
+  EXPECT_NEAR(speed(grid.faces({ledge, 0.02, 0}, 2)), 0, 1e-12);
+  EXPECT_NEAR(speed(grid.faces({ledge, 0.02, 0.00125}, 2)), 0.25, 1e-12);
+  EXPECT_NEAR(speed(grid.faces({ledge, 0.02, 0.005}, 2)), 1, 1e-12);
+  EXPECT_NEAR(speed(grid.faces({0.02, 0.02, 0}, 2)), 1, 1e-12);
+  EXPECT_NEAR(speed(grid.open_faces({ledge, 0.02, 0.00125}, 2)), 1, 1e-12);
+  EXPECT_DOUBLE_EQ(grid.face_volume(2, grid.face(grid.cell_at({ledge, 0.02, 0.001}), 2, -1)),
+                   0.5 * grid.volume());
+}
+
 TEST(SceneCellGrid, PeriodsHaveNoEnds) {
   const Domain domain = test::periodic_cube(1);
   const CellGrid grid(domain, {0.25, 0.25, 0.25});

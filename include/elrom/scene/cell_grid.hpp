@@ -4,7 +4,8 @@
 //
 // A cell is open where at least half of it lies inside the domain. Faces are staggered: face a of cell c is
 // that on its low side along axis a; it is open where both of its cells are, or where gas comes in or goes
-// out there. Weights are trilinear among what is open, with a sum of 1.
+// out there; where one of them is, it is a wall, on which gas stands. Weights are trilinear, of cells among
+// those that are open, of faces among those of open cells, with a sum of 1.
 //
 // Thread rule: const use from any thread.
 
@@ -56,24 +57,29 @@ class CellGrid {
 
   [[nodiscard]] Shares cells(const Vec& place) const;
   /// Faces are numbered as their cells, those of the high end in a layer of their own behind.
-  [[nodiscard]] Shares faces(const Vec& place, std::size_t axis) const;
+  [[nodiscard]] Shares faces(const Vec& place, std::size_t axis) const { return faces(place, axis, wall); }
+  /// Without walls: of what goes through faces.
+  [[nodiscard]] Shares open_faces(const Vec& place, std::size_t axis) const {
+    return faces(place, axis, inside);
+  }
   [[nodiscard]] std::size_t face_count(std::size_t axis) const { return faces_[axis].size(); }
   /// The face between a cell and its neighbour. @param side -1, 1
   [[nodiscard]] std::size_t face(std::size_t cell, std::size_t axis, int side) const;
   [[nodiscard]] bool is_face_open(std::size_t axis, std::size_t face) const {
-    return faces_[axis][face] != 0;
+    return faces_[axis][face] >= inside;
   }
-  /// An opening at the border of the open cells.
-  void open_face(std::size_t axis, std::size_t face) { faces_[axis][face] = border; }
-  /// Between the centres of its cells; at an opening half of that, m3.
+  /// An opening in a wall.
+  void open_face(std::size_t axis, std::size_t face) { faces_[axis][face] = opening; }
+  /// Between the centres of its cells; of walls and openings half of that, m3.
   [[nodiscard]] double face_volume(std::size_t axis, std::size_t face) const {
-    return faces_[axis][face] == border ? 0.5 * volume() : volume();
+    return faces_[axis][face] == inside ? volume() : 0.5 * volume();
   }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   using Index = std::array<std::size_t, 3>;
-  static constexpr std::uint8_t border = 2;
+  static constexpr std::uint8_t beyond = 0, wall = 1, inside = 2, opening = 3;  // of a face
+  [[nodiscard]] Shares faces(const Vec& place, std::size_t axis, std::uint8_t least) const;
   [[nodiscard]] Index index(std::size_t cell) const;
   [[nodiscard]] std::size_t cell(const Index& at) const {
     return at[0] + count_[0] * (at[1] + count_[1] * at[2]);
@@ -87,7 +93,7 @@ class CellGrid {
   std::vector<std::uint8_t> open_;
   std::vector<double> space_;
   std::vector<std::int32_t> host_;                  // open cell nearest to each
-  std::array<std::vector<std::uint8_t>, 3> faces_;  // 0: closed
+  std::array<std::vector<std::uint8_t>, 3> faces_;
 };
 
 }  // namespace elrom::scene

@@ -62,8 +62,8 @@ class GasFlow {
   /// Mean over the last advance().
   [[nodiscard]] const FaceValues& mean_velocity() const { return mean_; }
   [[nodiscard]] const std::vector<double>& pressure() const { return pressure_; }  ///< Pa, by cell
-  /// grad p, Pa/m, by face, mean over the last advance(), as spheres feel it; 0 on closed ones. On an
-  /// inlet, where the gas's velocity is given, it is what holds the drag there.
+  /// grad p, Pa/m, by face, mean over the last advance(), as spheres feel it. On inlets and
+  /// walls, where the gas's velocity is given, it is what holds the drag there.
   [[nodiscard]] FaceValues pressure_gradient() const;
 
   /// Gas that came in and went out in the last advance(), m3/s. With the solids' own displacement they
@@ -99,7 +99,7 @@ class GasFlow {
   [[nodiscard]] double gap(const Face& face, const GasLoad& load) const;
   [[nodiscard]] double drop(const Face& face, const std::vector<double>& p) const;  // gradient
   void look(const GasLoad& load);
-  void find_entry(const GasLoad& load);
+  void find_held(const GasLoad& load);
 
   std::shared_ptr<CellGrid> grid_;
   particle::Gas gas_;
@@ -108,7 +108,7 @@ class GasFlow {
   std::unique_ptr<Equation> equation_;
   FaceValues velocity_, mean_, before_, flux_, hold_;  // flux_: eps u; hold_: rho eps / dt + K
   std::vector<double> pressure_, mean_pressure_, correction_;
-  std::vector<double> entry_;  // grad p on the inlets' faces, in their order
+  std::vector<double> held_;  // grad p where the velocity is given: inlets and walls, in their order
   double flow_in_ = 0, flow_out_ = 0, divergence_ = 0;
   int n_steps_ = 0;
 };
