@@ -145,7 +145,7 @@ class Balance {
 
   const Simulation& simulation_;
   double from_, mass_, before_ = 0;
-  std::size_t in_layer_ = 1;  // cells
+  std::size_t in_layer_ = 1;              // cells
   std::vector<double> area_, face_area_;  // of each layer of cells; of each face's layer, 0: a wall; m2
   Particles ahead_;
   std::vector<double> layer_pressure_, layer_head_, layer_mass_, layer_momentum_, layer_flux_,

@@ -92,7 +92,7 @@ class CellGrid {
   std::array<bool, 3> periodic_{};
   std::vector<std::uint8_t> open_;
   std::vector<double> space_;
-  std::vector<std::int32_t> host_;                  // open cell nearest to each
+  std::vector<std::int32_t> host_;  // open cell nearest to each
   std::array<std::vector<std::uint8_t>, 3> faces_;
 };
 
