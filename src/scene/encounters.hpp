@@ -12,6 +12,11 @@ namespace elrom::scene {
 /// Of an event that does not happen.
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
+/// False for nearly all spheres that do not touch within a time. One condition, so that no guess is wrong.
+[[nodiscard]] inline bool may_meet(const Vec& d, const Vec& w, double reach, double time) {
+  return dot(d, d) - reach * reach <= std::max(0.0, -2 * time * dot(d, w));
+}
+
 /// First contact of spheres d apart that move by w relative to each other; now for those that overlap and
 /// close in.
 [[nodiscard]] inline double contact_time(const Vec& d, const Vec& w, double reach) {

@@ -172,7 +172,7 @@ class Level {
     }
     const double n_cells =
         static_cast<double>(count_[0]) * static_cast<double>(count_[1]) * static_cast<double>(count_[2]);
-    dense_ = n_cells <= 16.0 * static_cast<double>(members.size()) + 4096;
+    dense_ = n_cells <= 32.0 * static_cast<double>(members.size()) + 4096;
     n_buckets_ = dense_ ? static_cast<std::size_t>(n_cells) : 1;
     while (!dense_ && n_buckets_ < 2 * members.size()) n_buckets_ *= 2;
   }
@@ -235,7 +235,7 @@ class Level {
 
   std::vector<std::int32_t> unsorted_;
   std::vector<std::int64_t> keys_, unsorted_keys_;  // of the cells
-  std::vector<std::size_t> begin_, next_;           // of each bucket
+  std::vector<std::uint32_t> begin_, next_;         // of each bucket
   std::vector<double> x_, y_, z_, r_;               // of the members
   std::array<double, 3> origin_{}, per_length_{}, length_{};
   Cell count_{};

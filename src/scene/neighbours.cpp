@@ -15,7 +15,7 @@ namespace {
 
 // How many times smaller than the largest, in factors of two.
 std::size_t level_of(double diameter, double largest) {
-  return static_cast<std::size_t>(std::max(0, std::ilogb(largest / diameter)));
+  return largest < 2 * diameter ? 0 : static_cast<std::size_t>(std::ilogb(largest / diameter));
 }
 
 void expect_finite(const Particles& p) {
@@ -50,8 +50,7 @@ struct NeighbourList::Search {
   std::vector<Level> levels;  // largest spheres first; those of some size may be none
   std::vector<Pairs> found;   // by block
   std::vector<std::vector<std::int32_t>> walls;
-  std::vector<std::size_t> next, by_larger;
-  std::vector<std::int32_t> smaller;
+  std::vector<std::size_t> next;
 
   void sort_into_levels(const Particles& p, const Domain& domain, double skin) {
     const auto& d = p.contact_diameter();
@@ -93,9 +92,7 @@ NeighbourList::~NeighbourList() = default;
 
 void NeighbourList::build(const Particles& p, const Domain& domain, double skin, int n_threads) {
   const std::size_t n = p.size();
-  above_.begin.assign(n + 1, 0);
-  above_.partner.clear();
-  all_.begin.clear(), all_.partner.clear();
+  for (auto* rows : {&above_, &below_}) rows->begin.assign(n + 1, 0), rows->partner.clear();
   near_wall_.clear();
   if (n == 0) return;
   expect_finite(p);
@@ -130,52 +127,32 @@ void NeighbourList::find_walls(const Particles& p, const Domain& domain, double 
   for (const auto& wall : walls) near_wall_.insert(near_wall_.end(), wall.begin(), wall.end());
 }
 
-// Counting sorts by the larger number of a pair, then by the smaller: partners come out ascending.
+// Counting sorts by the larger number of a pair, then by the smaller: partners above come out ascending.
 void NeighbourList::sort_pairs(std::size_t n) {
   auto& s = *search_;
-  s.by_larger.assign(n + 1, 0);
   for (const auto& pairs : s.found)
     for (const auto& [i, j] : pairs) {
       ++above_.begin[static_cast<std::size_t>(i) + 1];
-      ++s.by_larger[static_cast<std::size_t>(j) + 1];
+      ++below_.begin[static_cast<std::size_t>(j) + 1];
     }
   for (std::size_t i = 0; i < n; ++i)
-    above_.begin[i + 1] += above_.begin[i], s.by_larger[i + 1] += s.by_larger[i];
-  s.smaller.resize(above_.begin[n]);
-  s.next.assign(s.by_larger.begin(), s.by_larger.end() - 1);
+    above_.begin[i + 1] += above_.begin[i], below_.begin[i + 1] += below_.begin[i];
+  below_.partner.resize(below_.begin[n]);
+  s.next.assign(below_.begin.begin(), below_.begin.end() - 1);
   for (const auto& pairs : s.found)
-    for (const auto& [i, j] : pairs) s.smaller[s.next[static_cast<std::size_t>(j)]++] = i;
+    for (const auto& [i, j] : pairs) below_.partner[s.next[static_cast<std::size_t>(j)]++] = i;
   above_.partner.resize(above_.begin[n]);
   s.next.assign(above_.begin.begin(), above_.begin.end() - 1);
   for (std::size_t j = 0; j < n; ++j)
-    for (std::size_t k = s.by_larger[j]; k < s.by_larger[j + 1]; ++k)
-      above_.partner[s.next[static_cast<std::size_t>(s.smaller[k])]++] = static_cast<std::int32_t>(j);
-}
-
-void NeighbourList::with_both() {
-  const std::size_t n = above_.begin.size() - 1;
-  all_.begin.assign(n + 1, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    all_.begin[i + 1] += above(i).size();
-    for (const auto j : above(i)) ++all_.begin[static_cast<std::size_t>(j) + 1];
-  }
-  for (std::size_t i = 0; i < n; ++i) all_.begin[i + 1] += all_.begin[i];
-  all_.partner.resize(all_.begin[n]);
-  auto& next = search_->next;
-  next.assign(all_.begin.begin(), all_.begin.end() - 1);
-  // Smaller partners of j come in the order of i, before j's own larger ones.
-  for (std::size_t i = 0; i < n; ++i)
-    for (const auto j : above(i))
-      all_.partner[next[static_cast<std::size_t>(j)]++] = static_cast<std::int32_t>(i);
-  for (std::size_t i = 0; i < n; ++i)
-    for (const auto j : above(i)) all_.partner[next[i]++] = j;
+    for (const auto i : below(j))
+      above_.partner[s.next[static_cast<std::size_t>(i)]++] = static_cast<std::int32_t>(j);
 }
 
 std::size_t NeighbourList::bytes() const {
   const auto of = [](const Rows& rows) {
     return rows.begin.capacity() * sizeof(std::size_t) + rows.partner.capacity() * sizeof(std::int32_t);
   };
-  return of(above_) + of(all_) + near_wall_.capacity() * sizeof(std::int32_t);
+  return of(above_) + of(below_) + near_wall_.capacity() * sizeof(std::int32_t);
 }
 
 double best_skin(const Particles& p, double travel, double look) {

@@ -2,6 +2,7 @@
 // that has the mean velocity and direction of all that it overlaps; only its own velocity changes, so that
 // momentum is lost, and a pair that still overlaps after the next step counts again.
 
+#include <algorithm>
 #include <cmath>
 
 #include "elrom/base/error.hpp"
@@ -20,10 +21,9 @@ class Proximity final : public Mover {
     fly(state, domain_, settings_.walls, dt, settings_.n_threads);
     auto& p = state.particles;
     near_.build(p, domain_, 0, settings_.n_threads);
-    near_.with_both();
     hit_.clear();
     for (std::size_t i = 0; i < p.size(); ++i) {
-      if (!near_.all(i).empty()) hit_.push_back(i);
+      if (!near_.above(i).empty() || !near_.below(i).empty()) hit_.push_back(i);
       for (const auto j : near_.above(i)) state.count_collision(i, static_cast<std::size_t>(j));
     }
     if (!hit_.empty()) collide(p);
@@ -46,12 +46,14 @@ class Proximity final : public Mover {
     }
   }
 
-  void put_mean_partner(const Particles& p, std::size_t i, particle::Pairs& pairs, Eigen::Index row) const {
-    const auto partners = near_.all(i);
-    const double share = 1 / static_cast<double>(partners.size());
+  void put_mean_partner(const Particles& p, std::size_t i, particle::Pairs& pairs, Eigen::Index row) {
+    partners_.assign(near_.below(i).begin(), near_.below(i).end());
+    partners_.insert(partners_.end(), near_.above(i).begin(), near_.above(i).end());
+    std::ranges::sort(partners_);
+    const double share = 1 / static_cast<double>(partners_.size());
     Vec velocity, towards;
     double diameter = 0, density = 0;
-    for (const auto j : partners) {
+    for (const auto j : partners_) {
       const auto at = static_cast<std::size_t>(j);
       velocity += share * get(p.velocity, at);
       towards += domain_.images().nearest(get(p.place, at) - get(p.place, i));
@@ -72,6 +74,7 @@ class Proximity final : public Mover {
   MoverSettings settings_;
   NeighbourList near_;
   std::vector<std::size_t> hit_;  // spheres that overlap some other
+  std::vector<std::int32_t> partners_;
   particle::Impulses impulses_;
 };
 

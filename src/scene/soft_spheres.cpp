@@ -11,6 +11,7 @@
 #include "elrom/base/parallel.hpp"
 #include "elrom/scene/neighbours.hpp"
 #include "movers.hpp"
+#include "nearest_gap.hpp"
 #include "walls.hpp"
 
 namespace elrom::scene {
@@ -250,7 +251,7 @@ class SoftSpheres final : public Mover {
     const Ball me = balls_[i];
     const bool periodic = domain_.images().any();
     std::size_t slot = neighbours_.first(i);
-    double nearest = HUGE_VAL, widest = 0;
+    NearestGap gap;
     for (const auto j : neighbours_.above(i)) {
       const Ball& other = balls_[static_cast<std::size_t>(j)];
       Vec apart{other.x - me.x, other.y - me.y, other.z - me.z};
@@ -260,11 +261,10 @@ class SoftSpheres final : public Mover {
         contacts.push_back(contact_of(p, i, static_cast<std::size_t>(j), slot, apart, std::sqrt(squared), h));
       else
         loaded_[slot] = 0;
-      nearest = std::min(nearest, squared - reach * reach), widest = std::max(widest, reach);
+      gap.see(squared, reach);
       ++slot;
     }
-    // No gap is narrower than that of the widest pair would be.
-    quiet_[i] = used_ + 0.5 * (std::sqrt(std::max(0.0, nearest) + widest * widest) - widest);
+    quiet_[i] = used_ + 0.5 * gap.least();
   }
 
   Contact contact_of(const Particles& p, std::size_t i, std::size_t j, std::size_t slot, const Vec& apart,

@@ -27,10 +27,8 @@ class NeighbourList {
 
   /// Partners of a sphere with a larger number, ascending.
   [[nodiscard]] std::span<const std::int32_t> above(std::size_t i) const { return part(above_, i); }
-  /// All of them, ascending. Only after with_both().
-  [[nodiscard]] std::span<const std::int32_t> all(std::size_t i) const { return part(all_, i); }
-  /// Makes all() from above().
-  void with_both();
+  /// Partners with a smaller number, in an order that is the same for any number of threads.
+  [[nodiscard]] std::span<const std::int32_t> below(std::size_t i) const { return part(below_, i); }
   /// Where the pairs of a sphere begin: pair k of all is (i, above(i)[k - first(i)]).
   [[nodiscard]] std::size_t first(std::size_t i) const { return above_.begin[i]; }
   [[nodiscard]] std::size_t size() const { return above_.partner.size(); }                 ///< pairs
@@ -49,7 +47,7 @@ class NeighbourList {
   void sort_pairs(std::size_t n);
   void find_walls(const Particles& particles, const Domain& domain, double skin, int n_threads);
 
-  Rows above_, all_;
+  Rows above_, below_;
   std::vector<std::int32_t> near_wall_;
   std::unique_ptr<Search> search_;
 };
