@@ -171,6 +171,70 @@ TEST_F(Engine, KnowsForcesWallsSizesSpinsAndPeriods) {
         << column;
 }
 
+// A wide box over a narrow one, for a gas alone and for spheres that fall through it as it was then.
+constexpr const char* boxes = R"(
+[[domain.boxes]]
+name = "narrow"
+low = [0, 0, 0]
+high = [0.006, 0.006, 0.006]
+[[domain.boxes]]
+name = "wide"
+low = [-0.002, -0.002, 0.006]
+high = [0.008, 0.008, 0.014]
+)";
+constexpr const char* gas_alone = R"(
+[scene]
+duration = 0.01
+time_step = 1e-3
+[domain]
+openings = ["narrow.z_high", "wide.z_low"]
+outlets = ["wide.z_high"]
+[gas]
+model = "coupled"
+[grid]
+cell = [0.001, 0.001, 0.001]
+[effects]
+drag = "schiller_naumann"
+[[gas.inlets]]
+side = "narrow.z_low"
+velocity = [0, 0, 0.5]
+[[particles]]
+group = "none"
+diameter = "400 um"
+number = 0
+)";
+constexpr const char* hopper = R"(
+[scene]
+duration = 0.02
+time_step = 1e-3
+[domain]
+openings = ["narrow.z_high", "wide.z_low"]
+[gas]
+model = "frozen"
+density = 200
+[effects]
+gravity = [0, 0, -9.81]
+buoyancy = true
+drag = "schiller_naumann"
+collisions = "helscm"
+[walls]
+normal_restitution = 0.8
+[collisions]
+restitution = 0.9
+stiffness = 5000
+[[regions]]
+name = "above"
+low = [-0.002, -0.002, 0.006]
+high = [0.008, 0.008, 0.014]
+[[particles]]
+group = "a"
+region = "above"
+diameter = "400 um"
+number = 300
+scatter = 0.2
+velocity = [0, 0, -0.5]
+)";
+
 // A large sphere that meets a small one and throws it ahead, 1.8 times as fast as any was before.
 constexpr const char* throws = R"(
 [scene]
@@ -203,6 +267,21 @@ diameter = "0.9 mm"
 number = 1
 arrangement = "lattice"
 )";
+
+TEST_F(Engine, KnowsBoxesThatOpenIntoEachOtherBuoyancyAndAFrozenGas) {
+  ASSERT_EQ(run("gas", 0, (std::string(gas_alone) + boxes).c_str()), 0) << errors();
+  const auto scene = std::string(hopper) + boxes;
+  const auto gas = "--set gas.file=" + (folder / "gas").string();
+  ASSERT_EQ(run("native", 0, scene.c_str(), gas), 0) << errors();
+  ASSERT_EQ(run("two", 2, scene.c_str(), gas), 0) << errors();
+
+  EXPECT_GT(last("native", "collisions"), 50);
+  EXPECT_GT(last("native", "wall_hits"), 50);
+  for (const auto* column :
+       {"collisions", "wall_hits", "kinetic_energy [J]", "mean height of a [m]", "momentum_x [kg m/s]"})
+    EXPECT_NEAR(last("two", column), last("native", column), 1e-6 * std::abs(last("native", column)))
+        << column;
+}
 
 // In this process, beside the native engine, to the end.
 struct Both {
