@@ -127,6 +127,8 @@ TEST(JudgeFields, StopsWhatNoFieldCanBe) {
   sample.spoil("solid_volume_fraction", -0.1F);
   EXPECT_ERROR(InputError, "impossible value in a.hdf, field solid_volume_fraction, value 3: found -0.1",
                judge_fields(sample.path, ""));
+  sample.spoil("solid_volume_fraction", 1.1F);
+  EXPECT_ERROR(InputError, "expected at most 0.65", judge_fields(sample.path, ""));
   sample.spoil("solid_volume_fraction", 0.1F);
   sample.spoil("pressure", std::nanf(""));
   EXPECT_ERROR(InputError, "no finite number", judge_fields(sample.path, ""));
