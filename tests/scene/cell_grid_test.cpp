@@ -23,6 +23,21 @@ TEST(SceneCellGrid, HoldsTheDomainsVolume) {
   EXPECT_NEAR(space, body_of(shape).volume(), 0.005 * 28);
 }
 
+// A cube that ends in the middle of cells; rods along its edges make the grid longer.
+TEST(SceneCellGrid, ACellHasTheSpaceThatLiesInside) {
+  const Domain domain({test::box({}, {0.95, 0.95, 0.95}), test::box({}, {1, 0.1, 0.1}, "x"),
+                       test::box({}, {0.1, 1, 0.1}, "y"), test::box({}, {0.1, 0.1, 1}, "z")});
+  const CellGrid grid(domain, {0.1, 0.1, 0.1});
+  const auto space = [&](std::size_t x, std::size_t y, std::size_t z) {
+    return grid.space(x + 10 * (y + 10 * z)) / grid.volume();
+  };
+  EXPECT_NEAR(space(5, 5, 5), 1, 1e-12);
+  EXPECT_NEAR(space(9, 5, 5), 0.5, 1e-12);
+  EXPECT_NEAR(space(9, 5, 9), 0.25, 1e-12);
+  EXPECT_NEAR(space(5, 9, 9), 0.25, 1e-12);
+  EXPECT_NEAR(space(9, 9, 9), 0.125, 1e-12);
+}
+
 TEST(SceneCellGrid, SharesAreTrilinearInside) {
   const Domain domain({test::box({}, {4, 4, 4})});
   const CellGrid grid(domain, {1, 1, 1});
