@@ -120,6 +120,15 @@ TEST(Check, UnitMistakesOfEveryKindAreTold) {
   EXPECT_THAT(field("solid_volume_fraction", 0.01f), found("unit", name, "solid_volume_fraction"));
 }
 
+TEST(Check, AUnitOfAllFlowsIsOneMistake) {
+  const auto findings = check_with(20, [](CfdCase& one) {
+    for (std::size_t i = 0; i < one.schema.size(); ++i)
+      if (one.schema[i].unit == "kg/s") one.record.inputs.values[i] *= 3.6;
+  });
+
+  EXPECT_THAT(findings, found("unit", shipped()[20].record.inputs.name, "all gas flows"));
+}
+
 TEST(Check, AnInputFarFromWhatTheOthersMakeUsualIsTold) {
   const auto findings = check_with(
       20, [](CfdCase& one) { one.record.inputs.values[one.schema.index_of("primary_air")] *= 1.35; });
