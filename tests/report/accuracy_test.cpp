@@ -181,6 +181,18 @@ TEST_F(Accuracy, JsonHoldsEveryFieldMethodAndCase) {
   EXPECT_EQ(root["cases"][0]["audit_prediction"]["planes"].size(), 5u);
   EXPECT_EQ(root["headline"], headline(*report_));
   EXPECT_EQ(root["leaked_cases"].size(), 0u);
+  for (std::size_t k = 0; k < coverage_levels.size(); ++k) {
+    const auto& level = root["fields"][0]["coverage"][k];
+    EXPECT_EQ(level["promised"], coverage_levels[k]);
+    ASSERT_EQ(level["by_case"].size(), 2u);
+    const auto& measured = report_->fields[0].coverage[k];
+    if (std::isnan(measured[1])) {  // the fixture's bundle has no intervals of 95 %
+      EXPECT_TRUE(level["measured"].is_null());
+      continue;
+    }
+    EXPECT_DOUBLE_EQ(level["by_case"][1], measured[1]);
+    EXPECT_DOUBLE_EQ(level["measured"], (measured[0] + measured[1]) / 2);
+  }
 }
 
 TEST_F(Accuracy, ChoiceIsToldAsTheBundleHasIt) {

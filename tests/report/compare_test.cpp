@@ -47,6 +47,8 @@ TEST_F(Compare, ABetterModelIsCalledBetterAndAWorseOneWorse) {
   EXPECT_EQ(worse.mean.gain.verdict(), Gain::Verdict::worse);
   EXPECT_TRUE(worse.b_is_worse());
   EXPECT_DOUBLE_EQ(worse.mean.a, better.mean.b);
+  for (const auto& field : better.fields)
+    EXPECT_NEAR(field.gain.value, 1 - field.b / field.a, 1e-12) << field.field;
 }
 
 TEST_F(Compare, AModelIsNoDifferentFromItself) {

@@ -75,6 +75,97 @@ TEST(SvgChart, BreaksALineWhereAValueIsMissing) {
   EXPECT_THAT(text, testing::Not(testing::HasSubstr("nan")));
 }
 
+// A frame of 150 x 100 pixels from (50, 10) on, so that places are easy to tell.
+constexpr svg::Size small_chart{
+    .width = 220, .height = 150, .left = 50, .right = 20, .top = 10, .bottom = 40};
+
+TEST(SvgChart, DrawsEachShapeWhereItsValuesLie) {
+  svg::Chart chart(small_chart, {"x", 0, 10}, {"y", 0, 1}, "test");
+  const std::vector<double> x{0, 10}, y{0, 1}, low{2, std::nan("")}, high{4, 6};
+
+  chart.line(x, y, "s0", "a");
+  chart.points(std::vector{5.0}, std::vector{0.25}, "s1", "b");
+  chart.band(low, high, y, "s2", "c");
+  chart.whisker(2, 0.1, 0.3, "s3");
+  chart.box(2, 4, 0.5, 0.75, "s4", "d", 0.5);
+  chart.dots(x, y, "s5", "e");
+  chart.tile(4, 6, 0, 0.5, "#123456", "f");
+  for (const auto* anchor : {"start", "middle", "end"}) chart.label(5, 0.5, "l", anchor);
+
+  const auto text = chart.text();
+  for (const auto* shape :
+       {"<path class=\"line s0\" d=\"M50 110L200 10\"><title>a</title></path>",
+        "<circle class=\"point s1\" cx=\"125\" cy=\"85\" r=\"3.5\"><title>b: 5, 0.25</title></circle>",
+        "<path class=\"band s2\" d=\"M80 110L50 10L140 10L110 110Z\"><title>c</title></path>",
+        "<path class=\"line s3\" d=\"M80 100V80\"/>",
+        "<rect class=\"fill s4\" x=\"80\" y=\"35\" width=\"30\" height=\"25\" opacity=\"0.500\">",
+        "<path class=\"dots s5\" d=\"M50 110h0M200 10h0\">",
+        "<rect fill=\"#123456\" x=\"110\" y=\"60\" width=\"30\" height=\"50\"><title>f</title></rect>",
+        "<text class=\"label\" x=\"132\" y=\"64\" text-anchor=\"start\">l</text>",
+        "<text class=\"label\" x=\"125\" y=\"64\" text-anchor=\"middle\">l</text>",
+        "<text class=\"label\" x=\"118\" y=\"64\" text-anchor=\"end\">l</text>"})
+    EXPECT_THAT(text, testing::HasSubstr(shape));
+}
+
+TEST(SvgChart, AxesHaveTicksLabelsAndAFrame) {
+  const auto text = svg::Chart(small_chart, {"across", 0, 10}, {"up", 0, 1}, "test").text();
+
+  for (
+      const auto* part :
+      {"viewBox=\"0 0 220 150\"", "aria-label=\"test\"", "<path class=\"frame\" d=\"M50 10V110H200\"/>",
+       "<path class=\"grid\" d=\"M125 10V110\"/><text class=\"tick\" x=\"125\" y=\"125\" text-anchor=\"middle\">5</text>",
+       "<path class=\"grid\" d=\"M50 60H200\"/><text class=\"tick\" x=\"44\" y=\"64\" text-anchor=\"end\">0.5</text>",
+       "<text class=\"axis\" x=\"125\" y=\"144\" text-anchor=\"middle\">across</text>",
+       "translate(13 60) rotate(-90)"})
+    EXPECT_THAT(text, testing::HasSubstr(part));
+}
+
+TEST(SvgChart, CutsOffAtTheFrameWhereItIsAskedTo) {
+  auto size = small_chart;
+  EXPECT_THAT(svg::Chart(size, {"", 0, 1}, {"", 0, 1}, "t").text(),
+              testing::Not(testing::HasSubstr("viewBox=\"50 10 150 100\"")));
+  size.clip = true;
+  EXPECT_THAT(
+      svg::Chart(size, {"", 0, 1}, {"", 0, 1}, "t").text(),
+      testing::HasSubstr("<svg x=\"50\" y=\"10\" width=\"150\" height=\"100\" viewBox=\"50 10 150 100\">"));
+}
+
+// 100 pixels for the longest.
+TEST(SvgBars, PartsStandSideBySideUnderTheirNames) {
+  const auto text = svg::bars({{"one", {{1, "a", "first"}, {1, "b", ""}}, "two in all"},
+                               {"lost", {{std::nan(""), "a", ""}, {0.5, "b", ""}}, "half"}},
+                              "error", "test", 392);
+
+  for (
+      const auto* part :
+      {"<text class=\"name\" x=\"164\" y=\"23\" text-anchor=\"end\">one</text>",
+       "<rect class=\"fill a\" x=\"172\" y=\"11\" width=\"50\" height=\"16\"><title>first</title></rect>",
+       "<rect class=\"fill b\" x=\"222\" y=\"11\" width=\"50\" height=\"16\"></rect>",
+       "<text class=\"label\" x=\"279\" y=\"23\">two in all</text>",
+       "<rect class=\"fill b\" x=\"172\" y=\"37\" width=\"25\" height=\"16\"></rect>",
+       "<path class=\"frame\" d=\"M172 6V58\"/><text class=\"axis\" x=\"222\" y=\"92\" text-anchor=\"middle\">error</text>",
+       "viewBox=\"0 0 392 98\""})
+    EXPECT_THAT(text, testing::HasSubstr(part));
+}
+
+TEST(SvgAxis, LabelsAreShort) {
+  for (const auto& [value, label] : std::vector<std::pair<double, std::string>>{{0, "0"},
+                                                                                {0.25, "0.25"},
+                                                                                {-12, "-12"},
+                                                                                {1e-3, "0.001"},
+                                                                                {5e-4, "5e-4"},
+                                                                                {99999, "1e+05"},
+                                                                                {1e5, "1e5"},
+                                                                                {-2.5e-6, "-2.5e-6"}})
+    EXPECT_EQ(svg::tick_label(value), label);
+}
+
+TEST(SvgAxis, LogarithmsOfLessThanTwoDecadesHaveOneTwoAndFive) {
+  EXPECT_THAT(svg::ticks({"", 0.15, 3, svg::Scale::log}, 5),
+              testing::ElementsAre(testing::DoubleNear(0.2, 1e-12), testing::DoubleNear(0.5, 1e-12),
+                                   testing::DoubleNear(1, 1e-12), testing::DoubleNear(2, 1e-12)));
+}
+
 TEST(SvgChart, TextIsEscaped) {
   const svg::Chart chart({}, {"a < b", 0, 1}, {"y & z", 0, 1}, "\"quoted\"");
 
