@@ -194,6 +194,32 @@ TEST_F(Scenes, PageOpensOfflineWithAllItsPartsAndJsonHasItsFigures) {
   EXPECT_EQ(json.at("runs").at(1).at("sections").at(0).at("volume_fraction").at(0).get<double>(), 0.2);
 }
 
+// A row of four cells along x: one place, so one chart a quantity, with a line for each run.
+TEST_F(Scenes, ProfilesHaveALineForEachRunAndTheVelocitiesOfTheirDirections) {
+  const auto made =
+      scene_report({.folders = {write("d", {.has_section = false, .has_row = true}),
+                                write("m", {.model = "helscm", .has_section = false, .has_row = true})}});
+  const auto page = html_page(made);
+  const auto begin = page.find("id=\"profiles\""), end = page.find("id=\"time\"");
+  ASSERT_LT(begin, end);
+  const auto profiles = page.substr(begin, end - begin), times = page.substr(end);
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t n = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+    return n;
+  };
+
+  for (const auto* quantity : {"Volume fraction", "Velocity of the solids along x",
+                               "Velocity of the solids along z", "Pressure of the gas"})
+    EXPECT_EQ(count(profiles, std::string("<summary>") + quantity + ", 1 place</summary>"), 1u) << quantity;
+  EXPECT_EQ(count(profiles, "<summary>"), 4u);
+  EXPECT_EQ(count(profiles, "class=\"line truth\""), 4u);
+  EXPECT_EQ(count(profiles, "class=\"line s"), 4u);
+  EXPECT_EQ(count(profiles, "<details open>"), 1u);
+  // Over time from 0 to 1 s: the axis holds all of it.
+  EXPECT_THAT(times, HasSubstr("text-anchor=\"middle\">0.5</text>"));
+}
+
 TEST_F(Scenes, MistakesAreNamed) {
   const auto dem = write("d", {});
   const auto expect = [&](const std::filesystem::path& other, const std::string& said) {
