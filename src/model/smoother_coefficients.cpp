@@ -48,7 +48,7 @@ double SmootherKernel::operator()(const double* z, const double* z_other) const 
     product += z[j] * z_other[j] * imbalance[j] * imbalance[j];
   }
   const double near = math::covariance(covariance, std::sqrt(squares));
-  return antisymmetric ? product * (linear + near) : near + linear * dot + constant;
+  return antisymmetric ? (product + constant) * (linear + near) : near + linear * dot + constant;
 }
 
 Eigen::MatrixXd SmootherKernel::matrix(const MatrixD& z, const MatrixD& z_other) const {

@@ -210,9 +210,14 @@ TEST(KernelMethod, TrustsASmoothFieldWhole) {
   EXPECT_LT(trusted, 1.1 * test::unseen_error(*make_kernel_method({.shrink = false}), data));
 }
 
-TEST(KernelMethod, MirroredInputsGiveTheMirroredField) {
-  const field::CaseSet cases = test::toy_cases(20);
-  const auto model = make_kernel_method()->fit(test::toy_field(cases, 0.05), math::all_rows(20), {});
+/// With the noise of few cases one side is always a little above the other.
+class MirroredInputs : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(OfNCases, MirroredInputs, ::testing::Values(14, 17, 20, 23, 26, 30));
+
+TEST_P(MirroredInputs, GiveTheMirroredField) {
+  const field::CaseSet cases = test::toy_cases(GetParam());
+  const auto rows = math::all_rows(cases.n_cases());
+  const auto model = make_kernel_method()->fit(test::toy_field(cases, 0.3), rows, {});
   const std::vector<double> inputs{5, 6, 7, 8, 60, 2e-4, 1100, 0.55};
   const field::Mirror& mirror = cases.mirrors[0];
 
@@ -230,6 +235,35 @@ TEST(KernelMethod, LearnsTheAsymmetryThatInputsExplain) {
 
   EXPECT_LT(test::unseen_error(*make_kernel_method(), data),
             0.7 * test::unseen_error(*make_kernel_method({.antisymmetric = false}), data));
+}
+
+/// On the one side of every case the gas rises faster, whatever the inputs.
+field::FieldData lopsided_field(const field::CaseSet& cases, double noise) {
+  field::FieldData data = test::toy_field(cases, noise);
+  for (Eigen::Index c = 0; c < data.values.cols(); ++c)
+    data.values.col(c).array() += cases.mesh.centre(c, 1) < cases.mesh.centre.col(1).mean() ? 0.05F : -0.05F;
+  return data;
+}
+
+TEST(KernelMethod, LearnsAnAsymmetryThatLasts) {
+  const field::CaseSet cases = test::toy_cases(30);
+
+  const double plain = test::unseen_error(*make_kernel_method(), test::toy_field(cases, 0.02)),
+               lopsided = test::unseen_error(*make_kernel_method(), lopsided_field(cases, 0.02));
+
+  EXPECT_LT(lopsided, 1.05 * plain);
+}
+
+TEST(KernelMethod, LearnsAnAsymmetryThatLastsWhereNothingIsImbalanced) {
+  field::CaseSet cases = test::toy_cases(30);
+  for (const auto& orbit : input_orbits(cases))
+    for (const auto j : orbit)
+      cases.inputs.col(static_cast<Eigen::Index>(j)) =
+          cases.inputs.col(static_cast<Eigen::Index>(orbit.front())).eval();
+  cases.inputs.col(7).setConstant(0.5);
+
+  EXPECT_LT(test::unseen_error(*make_kernel_method(), lopsided_field(cases, 0.02)),
+            1.05 * test::unseen_error(*make_kernel_method(), test::toy_field(cases, 0.02)));
 }
 
 TEST(KernelMethod, EveryOptionIsPartOfTheKey) {

@@ -58,6 +58,17 @@ Eigen::VectorXd predicted(const SmootherCoefficients& model, const Eigen::Vector
   return coefficients;
 }
 
+TEST(SmootherKernel, AnAntisymmetricOneIsOddButForItsConstant) {
+  const std::array<double, 2> z{0.5, -1}, other{2, 0.3};
+  const double r = std::hypot(0.75, 1.04), near = math::covariance(math::Covariance::matern52, r);
+  const double product = 0.5 * 2 - 1 * 0.3 * 0.7 * 0.7;
+  auto odd = kernel(true);
+
+  EXPECT_NEAR(odd(z.data(), other.data()), (product + 0.2) * (0.3 + near), 1e-12);
+  odd.constant = 0;
+  EXPECT_NEAR(odd(z.data(), other.data()), product * (0.3 + near), 1e-12);
+}
+
 TEST(SmootherCoefficients, ReadsBackItsCovariance) {
   const MatrixD z = random_matrix(n_known, n_inputs, 1), coefficients = random_matrix(n_known, n_fitted, 2);
   for (const auto covariance : {math::Covariance::matern52, math::Covariance::gaussian}) {

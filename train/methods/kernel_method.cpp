@@ -283,21 +283,55 @@ Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, 
   return learned;
 }
 
+/// A kernel of an antisymmetric part, and what it leaves of each case that is left out.
+struct AntisymmetricFit {
+  model::SmootherKernel kernel;
+  MatrixXd leave_one_out;
+  VectorXd errors;  // squared, summed over the cells, (n_cases)
+};
+
+/// The kernel of least leave-one-out error. An asymmetry that lasts, whatever the inputs, breaks the declared
+/// symmetry: it is taken only where cases show it beyond chance, by a mean gain of two standard errors.
+/// Nothing: it is better to predict no asymmetry at all.
+std::optional<AntisymmetricFit> fit_antisymmetry(const Features& features, std::size_t c,
+                                                 const model::SmootherKernel& symmetric, const MatrixXd& gram,
+                                                 const model::SmootherKernel* near) {
+  const MatrixD& z = features.z;
+  const auto fit_from = [&](const Asymmetry& from) {
+    AntisymmetricFit fit{fit_antisymmetric_kernel(z, symmetric, from, gram, near), {}, {}};
+    fit.leave_one_out = Smoother(fit.kernel, z).leave_one_out();
+    const MatrixXd left = MatrixXd::Identity(z.rows(), z.rows()) - fit.leave_one_out;
+    fit.errors = left.cwiseProduct(left * gram).rowwise().sum();
+    return fit;
+  };
+  std::optional<AntisymmetricFit> best;
+  VectorXd least = gram.diagonal();
+  const auto imbalances = features.of_class(c);
+  if (!imbalances.empty()) {
+    auto odd = fit_from({.imbalances = imbalances});
+    if (odd.errors.sum() < least.sum()) least = odd.errors, best = std::move(odd);
+  }
+  auto lasting = fit_from({.imbalances = imbalances, .lasting = true});
+  math::RunningMoments gains;
+  for (const double gain : least - lasting.errors) gains.add(gain);
+  if (gains.mean() > 2 * gains.deviation() / std::sqrt(static_cast<double>(z.rows())))
+    best = std::move(lasting);
+  return best;
+}
+
 Learned KernelMethod::learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
                                           const model::SmootherKernel& symmetric,
                                           const field::FieldData& data, int n_threads) const {
   Learned learned;
-  const auto imbalances = field.features.of_class(c);
-  const MatrixD& z = field.features.z;
-  const MatrixXd gram =
-      options_.antisymmetric && !imbalances.empty() ? cross_gram(values, values) : MatrixXd();
-  if (gram.size() == 0 || !(gram.trace() > 0)) return learned.residuals = std::move(values), learned;
-  learned.kernel = fit_antisymmetric_kernel(z, symmetric, imbalances, gram, field.earlier_kernel(c));
-  const Smoother smoother(learned.kernel, z);
-  if (leave_one_out_error(smoother.covariance, learned.kernel.noise, gram) >= gram.trace())
-    return learned.residuals = std::move(values), learned;  // better to predict no asymmetry at all
+  std::optional<AntisymmetricFit> fit;
+  if (options_.antisymmetric) {
+    const MatrixXd gram = cross_gram(values, values);
+    if (gram.trace() > 0) fit = fit_antisymmetry(field.features, c, symmetric, gram, field.earlier_kernel(c));
+  }
+  if (!fit) return learned.residuals = std::move(values), learned;
+  learned.kernel = fit->kernel;
   Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
-  MatrixF predicted = smoother.leave_one_out().cast<float>() * values;
+  MatrixF predicted = fit->leave_one_out.cast<float>() * values;
   shrinkage.learn(predicted, values, {.spectral = false, .prior = 0}, n_threads);
   learned.residuals = values - predicted;
   shrinkage.apply(values, n_threads);

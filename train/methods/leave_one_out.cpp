@@ -72,6 +72,7 @@ double symmetric_objective(const MatrixD& x, math::Covariance kind, const Criter
 }
 
 /// theta = (log weights of the imbalances, log linear, log common length factor, log noise)
+/// @param o imbalances, and a column of ones for a lasting asymmetry
 double antisymmetric_objective(const MatrixD& a, const MatrixD& o, const MatrixXd& gram,
                                math::Covariance kind, const VectorXd& theta, VectorXd& gradient) {
   const Index p = o.cols();
@@ -190,17 +191,22 @@ double mode_likelihood(const MatrixXd& covariance, double noise, const VectorXd&
 /// Standard deviations of what modes depart by from their field, of the logarithms of lengths and noise.
 constexpr double length_departure = 0.3, noise_departure = 1;
 
+/// Weight of an imbalance, or of the asymmetry that lasts, beside m(r) = 1.
+constexpr double usual_weight = 0.1, least_weight = 1e-5, most_weight = 10;
+
 VectorXd antisymmetric_start(const model::SmootherKernel& near, const model::SmootherKernel& symmetric,
-                             const std::vector<Index>& imbalances) {
+                             const Asymmetry& from) {
   double factor = 0, n = 0;
   for (Index j = 0; j < near.inverse_lengths.size(); ++j) {
     if (!(near.inverse_lengths[j] > 0 && symmetric.inverse_lengths[j] > 0)) continue;
     factor += std::log(symmetric.inverse_lengths[j] / near.inverse_lengths[j]);
     ++n;
   }
-  VectorXd theta(static_cast<Index>(imbalances.size()) + 3);
-  theta << 2 * near.imbalance(imbalances).array().log(), std::log(near.linear), factor / std::max(n, 1.0),
-      std::log(near.noise);
+  VectorXd weights(static_cast<Index>(from.imbalances.size()) + (from.lasting ? 1 : 0));
+  weights.head(static_cast<Index>(from.imbalances.size())) = near.imbalance(from.imbalances).cwiseAbs2();
+  if (from.lasting) weights.tail<1>()[0] = near.constant > 0 ? near.constant : usual_weight;
+  VectorXd theta(weights.size() + 3);
+  theta << weights.array().log(), std::log(near.linear), factor / std::max(n, 1.0), std::log(near.noise);
   return theta;
 }
 
@@ -284,25 +290,29 @@ model::SmootherKernel fit_mode_kernel(const MatrixD& z, const VectorXd& coeffici
 }
 
 model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z, const model::SmootherKernel& symmetric,
-                                               const std::vector<Index>& imbalances, const MatrixXd& gram,
+                                               const Asymmetry& from, const MatrixXd& gram,
                                                const model::SmootherKernel* near) {
-  const MatrixD a = z * symmetric.inverse_lengths.asDiagonal(), o = columns(z, imbalances);
+  const auto n_imbalances = static_cast<Index>(from.imbalances.size());
+  const MatrixD a = z * symmetric.inverse_lengths.asDiagonal();
+  MatrixD o = MatrixD::Ones(z.rows(), n_imbalances + (from.lasting ? 1 : 0));
+  o.leftCols(n_imbalances) = columns(z, from.imbalances);
   const auto p = o.cols();
   const auto objective = [&](const VectorXd& theta, VectorXd& gradient) {
     return antisymmetric_objective(a, o, gram, symmetric.covariance, theta, gradient);
   };
   const math::Minimum best = math::minimise(
       logarithm(objective),
-      near == nullptr ? logs(p, 0.1, {1, 1, 1}) : antisymmetric_start(*near, symmetric, imbalances),
-      logs(p, 1e-5, {1e-3, 0.2, 0.1}), logs(p, 10, {10, 30, 1e4}), near == nullptr ? search : search_nearby);
+      near == nullptr ? logs(p, usual_weight, {1, 1, 1}) : antisymmetric_start(*near, symmetric, from),
+      logs(p, least_weight, {1e-3, 0.2, 0.1}), logs(p, most_weight, {10, 30, 1e4}),
+      near == nullptr ? search : search_nearby);
   model::SmootherKernel kernel{.antisymmetric = true,
                                .covariance = symmetric.covariance,
                                .linear = std::exp(best.x[p]),
+                               .constant = from.lasting ? std::exp(best.x[n_imbalances]) : 0,
                                .noise = std::exp(best.x[p + 2])};
   kernel.inverse_lengths = symmetric.inverse_lengths * std::exp(-best.x[p + 1]);
   kernel.imbalance = VectorXd::Zero(z.cols());
-  for (Index j = 0; j < p; ++j)
-    kernel.imbalance[imbalances[static_cast<std::size_t>(j)]] = std::exp(0.5 * best.x[j]);
+  kernel.imbalance(from.imbalances) = (0.5 * best.x.head(n_imbalances)).array().exp();
   return kernel;
 }
 

@@ -48,11 +48,17 @@ struct StationaryKernel {
 [[nodiscard]] model::SmootherKernel fit_mode_kernel(const MatrixD& z, const Eigen::VectorXd& coefficients,
                                                     const model::SmootherKernel& field);
 
+/// What an antisymmetric part is learned from.
+struct Asymmetry {
+  std::vector<Eigen::Index> imbalances;  //!< features
+  bool lasting = false;                  ///< and the asymmetry that all cases share, the kernel's constant
+};
+
 /// @param symmetric the field's symmetric kernel: its lengths are kept, up to one common factor
-/// @param imbalances features of the antisymmetric part @param near as above
+/// @param from imbalances, or a lasting asymmetry, or both @param near as above
 [[nodiscard]] model::SmootherKernel fit_antisymmetric_kernel(const MatrixD& z,
                                                              const model::SmootherKernel& symmetric,
-                                                             const std::vector<Eigen::Index>& imbalances,
+                                                             const Asymmetry& from,
                                                              const Eigen::MatrixXd& gram,
                                                              const model::SmootherKernel* near = nullptr);
 

@@ -10,6 +10,10 @@
 // leading modes of what the smoother says have lengths and noise of their own, by likelihood near those of
 // the field.
 //
+// An antisymmetric part follows the imbalances of the inputs, so a mirrored case gets the mirrored field. But
+// where cases show beyond chance that one side differs from the other whatever the inputs (an outlet, or
+// the solver), that lasting asymmetry is learned too.
+//
 // Why it does better than POD with a process a mode on few cases: mirror images are
 // used exactly instead of by augmentation; all modes share one covariance with few,
 // physical inputs; noise that no input explains is shrunk.

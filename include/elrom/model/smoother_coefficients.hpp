@@ -16,7 +16,8 @@ namespace elrom::model {
 
 /// Covariance of two cases with standardised derived inputs z and z', m(r) = Matern 5/2 or Gaussian:
 ///   symmetric      k = m(r) + linear * (a . a') + constant
-///   antisymmetric  k = (u . u') * (linear + m(r)), odd in u: a mirrored case gives the mirrored answer
+///   antisymmetric  k = (u . u' + constant) * (linear + m(r)), odd in u where constant is 0: then a mirrored
+///                  case gives the mirrored answer. What the constant stands for keeps its side
 /// with a = z * inverse_lengths, r = |a - a'|, u = z * imbalance.
 struct SmootherKernel {
   bool antisymmetric = false;
