@@ -105,6 +105,19 @@ TEST(SceneCoupledGas, SectionsHaveTheMeanPressureOfTheCellsInThem) {
   EXPECT_GT(pressure[0], 0);
 }
 
+TEST(SceneCoupledGas, SeriesNamesEveryColumnOfTheGas) {
+  const test::TemporaryFolder folder;
+  Simulation simulation(bed("0.2", "hel", "80", "0.003"), 1);
+  run(simulation, folder / "o", silent_log(), {});
+
+  const auto table = io::read_csv(folder / "o" / "series.csv");
+  const auto& last = table.rows.back();
+  const auto column = std::ranges::find(table.headings, "gas flow in [m3/s]") - table.headings.begin();
+  ASSERT_EQ(last.size(), table.headings.size());
+  ASSERT_LT(static_cast<std::size_t>(column), last.size());
+  EXPECT_NEAR(base::to_double(last[static_cast<std::size_t>(column)]).value(), 0.2 * 1e-4, 1e-12);
+}
+
 TEST(SceneCoupledGas, BedBelowFluidisationCarriesOnlyWhatErgunSays) {
   Simulation simulation(bed("0.03", "hel", "8000", "0.6"), 1);
   const double pressure = means(simulation, 0.4).pressure, weight = weight_per_area(simulation);

@@ -26,6 +26,20 @@ TEST(SceneDomain, TurnedBoxKeepsItsVolumeAndDistances) {
   EXPECT_NEAR(domain.distance({1.5, 1, -0.25}), 0.25, 1e-12);  // x -> -z, z -> x
 }
 
+TEST(SceneDomain, TurnsRightHandedAboutEachAxis) {
+  const double c = std::cos(0.5), s = std::sin(0.5);
+  const std::array<Vec, 3> expected{{{2, 3 * c - 4 * s, 3 * s + 4 * c},
+                                     {2 * c + 4 * s, 3, 4 * c - 2 * s},
+                                     {2 * c - 3 * s, 2 * s + 3 * c, 4}}};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Body body =
+        body_of({.name = "b", .low = {}, .high = {2, 3, 4}, .turn_axis = "xyz"[a], .turn_angle = 0.5});
+
+    const Vec off = body.corners[7] - expected[a];
+    EXPECT_NEAR(dot(off, off), 0, 1e-28) << a;
+  }
+}
+
 TEST(SceneDomain, TaperedBoxHasTheVolumeOfAFrustum) {
   BoxShape shape{.name = "bottom", .low = {-1, -1, 0}, .high = {1, 1, 3}};
   shape.top = {{{-2, -2}, {2, 2}}};

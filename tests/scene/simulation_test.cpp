@@ -54,6 +54,17 @@ double falling_speed(double diameter, const std::string& step, const std::string
   return -simulation.state().particles.velocity[2][0];
 }
 
+TEST(SceneGroups, AsManySpheresAsMakeUpTheMass) {
+  auto s = scene("");
+  s.groups[0].number.reset();
+  s.groups[0].mass = 2e-6;
+  const Simulation simulation(s, 1);
+  const auto& spheres = simulation.state().particles;
+
+  EXPECT_GE(mass_of(spheres), 2e-6);
+  EXPECT_LT(mass_of(spheres), 2e-6 + spheres.mass[0]);
+}
+
 TEST(SceneForces, TerminalVelocityIsTheClosedOneAtAnyStep) {
   for (const double d : {315e-6, 475e-6, 3e-3})
     for (const auto* step : {"0.001", "0.01", "0.5"}) {
