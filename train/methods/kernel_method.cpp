@@ -4,9 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <ranges>
 
-#include "derived_inputs.hpp"
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
 #include "elrom/math/linear_algebra.hpp"
@@ -16,10 +14,10 @@
 #include "elrom/model/coefficient_models.hpp"
 #include "elrom/model/pod_model.hpp"
 #include "elrom/model/smoother_coefficients.hpp"
+#include "field_parts.hpp"
 #include "leave_one_out.hpp"
 #include "shrinkage.hpp"
 #include "smoother_modes.hpp"
-#include "symmetry_classes.hpp"
 
 namespace elrom::methods {
 
@@ -28,18 +26,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// A B^T in double, over blocks of cells.
-MatrixXd cross_gram(const MatrixF& a, const MatrixF& b) {
-  constexpr Index block = 1024;
-  MatrixXd gram = MatrixXd::Zero(a.rows(), b.rows());
-  for (Index begin = 0; begin < a.cols(); begin += block) {
-    const Index n = std::min(block, a.cols() - begin);
-    const MatrixD left = a.middleCols(begin, n).cast<double>(), right = b.middleCols(begin, n).cast<double>();
-    gram += left * right.transpose();
-  }
-  return gram;
-}
 
 /// What one class of the field becomes: its modes and what predicts them.
 struct SymmetryPart {
@@ -56,136 +42,6 @@ struct Learned {
   MatrixF shrunk;     // the cases, every wavelength and cell as far as it is trusted, (n_cases, n_cells)
   MatrixF residuals;  // (n_cases, n_cells), leave-one-out
   bool predicts = false;
-};
-
-struct Features {
-  DerivedInputs derived;
-  math::Standardiser scaler;  // imbalances keep their zero: mean 0, root mean square as scale
-  MatrixD z;
-
-  [[nodiscard]] std::vector<Index> of_class(std::size_t c) const {
-    std::vector<Index> found;
-    for (std::size_t j = 0; j < derived.class_of.size(); ++j) {
-      if (derived.class_of[j] == c) found.push_back(static_cast<Index>(j));
-    }
-    return found;
-  }
-  [[nodiscard]] bool has(const std::string& name) const {
-    return std::ranges::find(derived.map.features(), name, &model::Feature::name) !=
-           derived.map.features().end();
-  }
-  [[nodiscard]] bool same_as(const model::FeatureMap& other) const {
-    return std::ranges::equal(derived.map.features(), other.features(), {}, &model::Feature::name,
-                              &model::Feature::name);
-  }
-};
-
-Features features_of(const field::CaseSet& cases, std::span<const std::size_t> rows,
-                     const std::vector<SymmetryClass>& classes, std::span<const std::string> wanted) {
-  Features features{derive_inputs(cases, rows, classes, wanted), {}, {}};
-  MatrixD raw(static_cast<Index>(rows.size()), static_cast<Index>(features.derived.map.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto row = cases.inputs.row(static_cast<Index>(rows[i]));
-    auto out = raw.row(static_cast<Index>(i));
-    features.derived.map.evaluate({row.data(), static_cast<std::size_t>(row.size())},
-                                  {out.data(), static_cast<std::size_t>(out.size())});
-  }
-  math::ColumnMoments moments = math::column_moments(raw);
-  for (Index j = 0; j < raw.cols(); ++j) {
-    if (features.derived.class_of[static_cast<std::size_t>(j)] == 0) continue;
-    moments.mean[j] = 0;
-    moments.deviation[j] = std::sqrt(raw.col(j).squaredNorm() / static_cast<double>(raw.rows()));
-  }
-  features.scaler = math::Standardiser(moments.mean, moments.deviation);
-  features.z = features.scaler.apply(raw);
-  return features;
-}
-
-/// Every class of a field, with what all of them are learned from.
-struct FieldParts {
-  std::vector<SymmetryClass> classes;
-  MatrixF symmetric;  // departures of the symmetric class from its mean, (n_cases, n_cells)
-  VectorXd mean;      // (n_cells)
-  Features features;
-  std::optional<model::SmootherKernel> first;            // of the least leave-one-out error
-  const model::SmootherCoefficients* earlier = nullptr;  // of the same features
-
-  FieldParts(const field::FieldData& data, std::span<const std::size_t> cases, const FitContext& context)
-      : classes(symmetry_classes(data.cases->mirrors.size())),
-        symmetric(project(data, cases, classes.front(), context.n_threads)),
-        mean(math::row_mean(symmetric, math::all_rows(cases.size()), context.n_threads)) {
-    for (Index i = 0; i < symmetric.rows(); ++i) symmetric.row(i) -= mean.transpose().cast<float>();
-    const auto* smoother = context.warm == nullptr ? nullptr : context.warm->smoother();
-    features = features_of(*data.cases, cases, classes, names_of(smoother));
-    if (smoother != nullptr && features.same_as(smoother->features())) earlier = smoother;
-    if (nothing_to_learn() || earlier_kernel(0) != nullptr) return;
-    earlier = nullptr;
-    choose(*data.cases, cases, cross_gram(symmetric, symmetric));
-  }
-
-  [[nodiscard]] bool nothing_to_learn() const {
-    return symmetric.rows() < 3 || features.of_class(0).empty() || !(symmetric.squaredNorm() > 0);
-  }
-  /// The earlier kernel of a class; nullptr: none, or it knew other features.
-  [[nodiscard]] const model::SmootherKernel* earlier_kernel(std::size_t c) const {
-    if (earlier == nullptr) return nullptr;
-    const auto own = features.of_class(c);
-    // The last symmetric group has the field's own kernel.
-    for (const auto& group : std::views::reverse(earlier->groups())) {
-      if (group.kernel.antisymmetric != (c > 0)) continue;
-      const VectorXd& used = c > 0 ? group.kernel.imbalance : group.kernel.inverse_lengths;
-      if ((used.array() > 0).count() == static_cast<Index>(own.size()) && (used(own).array() > 0).all())
-        return &group.kernel;
-    }
-    return nullptr;
-  }
-
- private:
-  [[nodiscard]] static std::vector<std::string> names_of(const model::SmootherCoefficients* smoother) {
-    std::vector<std::string> names;
-    if (smoother == nullptr) return names;
-    for (const auto& feature : smoother->features().features()) names.push_back(feature.name);
-    return names;
-  }
-
-  struct Trial {
-    Features features;
-    model::SmootherKernel kernel;
-    double error = 0;  // leave-one-out
-  };
-  [[nodiscard]] static Trial trial(Features of, const MatrixXd& gram, math::Covariance covariance) {
-    const MatrixD& z = of.z;
-    auto kernel = fit_symmetric_kernel(z, of.of_class(0), gram, covariance);
-    const double error = leave_one_out_error(kernel.matrix(z, z), kernel.noise, gram);
-    return {std::move(of), std::move(kernel), error};
-  }
-  /// The covariance, and the form of each quantity that varies widely, of the least leave-one-out error: in
-  /// some form the field is smoothest, and only the cases know in which.
-  void choose(const field::CaseSet& cases, std::span<const std::size_t> rows, const MatrixXd& gram) {
-    using enum math::Covariance;
-    Trial best = trial(features, gram, matern52);
-    const auto take_better = [&](Trial other) {
-      if (other.error < best.error) best = std::move(other);
-    };
-    const auto other_covariance = [&] { return best.kernel.covariance == gaussian ? matern52 : gaussian; };
-    take_better(trial(best.features, gram, other_covariance()));
-    std::vector<std::string> chosen;
-    for (const auto& forms : features.derived.forms) {
-      for (const auto& form : forms) {
-        auto wanted = chosen;
-        wanted.push_back(form);
-        auto other = features_of(cases, rows, classes, wanted);
-        const bool new_form = !best.features.has(form);
-        if (new_form && other.of_class(0).size() == best.features.of_class(0).size())
-          take_better(trial(std::move(other), gram, best.kernel.covariance));
-      }
-      for (const auto& form : forms)
-        if (best.features.has(form)) chosen.push_back(form);
-    }
-    if (!chosen.empty()) take_better(trial(best.features, gram, other_covariance()));
-    features = std::move(best.features);
-    first = std::move(best.kernel);
-  }
 };
 
 class KernelMethod final : public Method {
@@ -293,7 +149,7 @@ struct AntisymmetricFit {
 /// The kernel of least leave-one-out error. An asymmetry that lasts, whatever the inputs, breaks the declared
 /// symmetry: it is taken only where cases show it beyond chance, by a mean gain of two standard errors.
 /// Nothing: it is better to predict no asymmetry at all.
-std::optional<AntisymmetricFit> fit_antisymmetry(const Features& features, std::size_t c,
+std::optional<AntisymmetricFit> fit_antisymmetry(const KernelFeatures& features, std::size_t c,
                                                  const model::SmootherKernel& symmetric, const MatrixXd& gram,
                                                  const model::SmootherKernel* near) {
   const MatrixD& z = features.z;

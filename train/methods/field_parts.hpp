@@ -1,0 +1,68 @@
+#pragma once
+// What the kernel method learns a field from: its symmetry classes, the derived inputs, and the symmetric
+// part's first kernel, with its covariance and the forms of its inputs chosen. Internal to study.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "derived_inputs.hpp"
+#include "elrom/math/kernel.hpp"
+#include "elrom/math/standardiser.hpp"
+#include "elrom/model/smoother_coefficients.hpp"
+#include "symmetry_classes.hpp"
+
+namespace elrom::methods {
+
+/// A B^T in double, (n, m). @param a (n, n_cells) @param b (m, n_cells)
+[[nodiscard]] Eigen::MatrixXd cross_gram(const MatrixF& a, const MatrixF& b);
+
+/// Derived inputs of the cases and their scales.
+struct KernelFeatures {
+  DerivedInputs derived;
+  math::Standardiser scaler;  // imbalances keep their zero: mean 0, root mean square as scale
+  MatrixD z;
+
+  [[nodiscard]] std::vector<Eigen::Index> of_class(std::size_t c) const {
+    std::vector<Eigen::Index> found;
+    for (std::size_t j = 0; j < derived.class_of.size(); ++j) {
+      if (derived.class_of[j] == c) found.push_back(static_cast<Eigen::Index>(j));
+    }
+    return found;
+  }
+  [[nodiscard]] bool has(const std::string& name) const {
+    return std::ranges::find(derived.map.features(), name, &model::Feature::name) !=
+           derived.map.features().end();
+  }
+  [[nodiscard]] bool same_as(const model::FeatureMap& other) const {
+    return std::ranges::equal(derived.map.features(), other.features(), {}, &model::Feature::name,
+                              &model::Feature::name);
+  }
+};
+
+/// Every class of a field, with what all of them are learned from.
+struct FieldParts {
+  std::vector<SymmetryClass> classes;
+  MatrixF symmetric;     // departures of the symmetric class from its mean, (n_cases, n_cells)
+  Eigen::VectorXd mean;  // (n_cells)
+  KernelFeatures features;
+  std::optional<model::SmootherKernel> first;            // of the least leave-one-out error
+  const model::SmootherCoefficients* earlier = nullptr;  // of the same features
+
+  FieldParts(const field::FieldData& data, std::span<const std::size_t> cases, const FitContext& context);
+
+  [[nodiscard]] bool nothing_to_learn() const {
+    return symmetric.rows() < 3 || features.of_class(0).empty() || !(symmetric.squaredNorm() > 0);
+  }
+  /// The earlier kernel of a class; nullptr: none, or it knew other features.
+  [[nodiscard]] const model::SmootherKernel* earlier_kernel(std::size_t c) const;
+
+ private:
+  /// The covariance, and the form of each quantity that varies widely, of the least leave-one-out error: in
+  /// some form the field is smoothest, and only the cases know in which.
+  void choose(const field::CaseSet& cases, std::span<const std::size_t> rows, const Eigen::MatrixXd& gram);
+};
+
+}  // namespace elrom::methods
