@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "elrom/base/error.hpp"
 #include "elrom/model/smoother_coefficients.hpp"
@@ -44,24 +45,23 @@ void add_square(const float* mode, std::size_t n, float variance, float* out) {
   for (std::size_t j = 0; j < n; ++j) out[j] += variance * (mode[j] * mode[j]);
 }
 
-/// (n_modes, n_planes * n_columns) to (n_planes, n_modes, n_columns), or n_orbits for n_columns with a fold.
-io::Tensor by_plane(const MatrixF& modes, std::size_t n_columns, const SymmetryFold& fold) {
-  const auto n_modes = static_cast<std::size_t>(modes.rows()),
-             n_cells = static_cast<std::size_t>(modes.cols());
-  const std::size_t n_planes = n_cells / n_columns, n_stored = fold.empty() ? n_columns : fold.n_orbits();
-  std::vector<float> ordered(n_planes * n_modes * n_stored);
-  for (std::size_t p = 0; p < n_planes; ++p) {
-    for (std::size_t m = 0; m < n_modes; ++m) {
-      const std::span<const float> from(modes.data() + m * n_cells + p * n_columns, n_columns);
-      const std::span<float> to(ordered.data() + (p * n_modes + m) * n_stored, n_stored);
-      if (fold.empty()) {
+/// Row by row as the model keeps them. @param modes (n_modes, n_planes * n_columns)
+/// @return (n_rows, n_columns), or n_orbits for n_columns with a fold
+io::Tensor stored(const MatrixF& modes, std::size_t n_columns, const SymmetryFold& fold,
+                  std::span<const std::int32_t> first_row, std::span<const std::int32_t> mode_of) {
+  const std::size_t width = fold.empty() ? n_columns : fold.n_orbits();
+  std::vector<float> rows(mode_of.size() * width);
+  for (std::size_t p = 0; p + 1 < first_row.size(); ++p) {
+    for (auto r = static_cast<std::size_t>(first_row[p]); std::cmp_less(r, first_row[p + 1]); ++r) {
+      const std::span<const float> from(modes.row(mode_of[r]).data() + p * n_columns, n_columns);
+      const std::span<float> to(rows.data() + r * width, width);
+      if (fold.empty())
         std::ranges::copy(from, to.begin());
-      } else {
+      else
         fold.pick(from, to);
-      }
     }
   }
-  return io::Tensor::copy(std::span<const float>(ordered), {n_planes, n_modes, n_stored});
+  return io::Tensor::copy(std::span<const float>(rows), {mode_of.size(), width});
 }
 
 io::Tensor cells(const Eigen::VectorXd& values, std::size_t n_columns) {
@@ -78,15 +78,41 @@ PodModel::PodModel(Parts parts, const std::string& where) : parts_(std::move(par
   n_planes_ = parts_.mean.shape()[0];
   n_columns_ = parts_.mean.shape()[1];
   n_modes_ = parts_.coefficients->n_coefficients();
-  const std::size_t n_stored = parts_.fold.empty() ? n_columns_ : parts_.fold.n_orbits();
-  if (parts_.modes.shape() != std::vector{n_planes_, n_modes_, n_stored}) {
+  const std::size_t width = parts_.fold.empty() ? n_columns_ : parts_.fold.n_orbits();
+  if (!parts_.first_row.empty()) {
+    check_rows(where);
+  } else if (parts_.modes.shape() != std::vector{n_planes_, n_modes_, width}) {
     refuse(where, "modes do not fit mean and coefficients", parts_.modes,
-           std::to_string(n_planes_) + " x " + std::to_string(n_modes_) + " x " + std::to_string(n_stored));
+           std::to_string(n_planes_) + " x " + std::to_string(n_modes_) + " x " + std::to_string(width));
   }
   check_fold(parts_, n_modes_, n_columns_, where);
   if (!parts_.residual.empty() && parts_.residual.shape() != parts_.mean.shape()) {
     refuse(where, "residual does not fit the mean", parts_.residual, shape_text(parts_.mean));
   }
+}
+
+void PodModel::check_rows(const std::string& where) const {
+  const auto& first = parts_.first_row;
+  const std::size_t n_rows = parts_.mode_of.size(),
+                    width = parts_.fold.empty() ? n_columns_ : parts_.fold.n_orbits();
+  const auto known = [&](std::int32_t m) { return m >= 0 && std::cmp_less(m, n_modes_); };
+  if (first.size() != n_planes_ + 1 || first.front() != 0 || std::cmp_not_equal(first.back(), n_rows) ||
+      !std::ranges::is_sorted(first) || !std::ranges::all_of(parts_.mode_of, known) ||
+      parts_.modes.shape() != std::vector{n_rows, width}) {
+    refuse(where, "rows of modes do not fit mean and coefficients", parts_.modes,
+           std::to_string(n_rows) + " x " + std::to_string(width) + ", of modes below " +
+               std::to_string(n_modes_));
+  }
+}
+
+PodModel::Rows PodModel::rows_of(std::size_t plane) const {
+  if (parts_.first_row.empty()) return {plane * n_modes_, n_modes_};
+  const auto first = static_cast<std::size_t>(parts_.first_row[plane]);
+  return {first, static_cast<std::size_t>(parts_.first_row[plane + 1]) - first};
+}
+
+std::size_t PodModel::mode_of(std::size_t row) const {
+  return parts_.mode_of.empty() ? row % n_modes_ : static_cast<std::size_t>(parts_.mode_of[row]);
 }
 
 void PodModel::predict(const Query& query, std::span<float> values, std::span<float> spread,
@@ -100,31 +126,28 @@ void PodModel::predict(const Query& query, std::span<float> values, std::span<fl
   std::transform(exact.begin(), exact.end(), c.begin(), [](double v) { return static_cast<float>(v); });
 
   const float* mean = parts_.mean.f32().data();
-  const float* modes = parts_.modes.f32().data();
-  const std::size_t n = n_columns_, plane_size = n_modes_ * parts_.modes.shape()[2];
+  const std::size_t n = n_columns_;
   const std::span<float> v = workspace.floats(variance.size());
   std::ranges::transform(variance, v.begin(), [](double value) { return static_cast<float>(value); });
   for (std::size_t i = 0; i < query.planes.size(); ++i) {
     const auto plane = static_cast<std::size_t>(query.planes[i]);
     const auto out = values.subspan(i * n, n);
     std::copy_n(mean + plane * n, n, out.begin());
-    add_modes(modes + plane * plane_size, c, false, out, workspace);
+    add_modes(plane, c, false, out, workspace);
     if (spread.empty()) continue;
 
     const auto s = spread.subspan(i * n, n);
     std::ranges::fill(s, 0.0F);
     if (!parts_.residual.empty()) add_square(parts_.residual.f32().data() + plane * n, n, 1.0F, s.data());
-    add_modes(modes + plane * plane_size, v, true, s, workspace);
+    add_modes(plane, v, true, s, workspace);
     for (float& deviation : s) deviation = std::sqrt(deviation);
   }
 }
 
 void PodModel::add_modes_everywhere(std::span<const float> weights, std::span<float> out) const {
-  const std::size_t plane_size = n_modes_ * parts_.modes.shape()[2];
   Workspace workspace;
   for (std::size_t plane = 0; plane < n_planes_; ++plane)
-    add_modes(parts_.modes.f32().data() + plane * plane_size, weights, false,
-              out.subspan(plane * n_columns_, n_columns_), workspace);
+    add_modes(plane, weights, false, out.subspan(plane * n_columns_, n_columns_), workspace);
 }
 
 std::unique_ptr<FieldModel> PodModel::of_other_cases(std::shared_ptr<const CoefficientModel> coefficients,
@@ -159,30 +182,34 @@ std::unique_ptr<FieldModel> PodModel::with_case(std::span<const double> inputs,
     mode.setZero();
     unit = Eigen::VectorXf::Unit(unit.size(), m);
     add_modes_everywhere({unit.data(), n_modes_}, {mode.data(), values.size()});
-    const double square = mode.cast<double>().squaredNorm();
-    coefficients[m] = square > 0 ? departure.cast<double>().dot(mode.cast<double>()) / square : 0.0;
+    coefficients[m] = departure.cast<double>().dot(mode.cast<double>());
   }
   const auto changed = smoother->with_case(inputs, coefficients);
   return of_other_cases(changed.coefficients, changed.mean_shift);
 }
 
-void PodModel::add_modes(const float* modes, std::span<const float> weights, bool squares,
+void PodModel::add_modes(std::size_t plane, std::span<const float> weights, bool squares,
                          std::span<float> out, Workspace& workspace) const {
   const bool folded = !parts_.fold.empty();
-  const std::size_t n = parts_.modes.shape()[2];
+  const std::size_t n = parts_.modes.shape().back();
+  const auto [first, n_rows] = rows_of(plane);
+  const float* rows = parts_.modes.f32().data() + first * n;
   const Workspace::Frame frame(workspace);
+  const std::span<float> own = workspace.floats(n_rows);
+  for (std::size_t r = 0; r < n_rows; ++r) own[r] = weights[mode_of(first + r)];
+  const auto class_of = [&](std::size_t r) { return parts_.class_of_mode[mode_of(first + r)]; };
   const auto sum = folded ? workspace.floats(n) : out;
   // Runs of modes of one class; without a fold all modes are one run.
-  for (std::size_t begin = 0, end; begin < n_modes_; begin = end) {
-    end = folded ? begin + 1 : n_modes_;
-    while (end < n_modes_ && parts_.class_of_mode[end] == parts_.class_of_mode[begin]) ++end;
+  for (std::size_t begin = 0, end; begin < n_rows; begin = end) {
+    end = folded ? begin + 1 : n_rows;
+    while (end < n_rows && class_of(end) == class_of(begin)) ++end;
     if (folded) std::ranges::fill(sum, 0.0F);
-    std::size_t m = begin;
-    for (; squares && m < end; ++m) add_square(modes + m * n, n, weights[m], sum.data());
-    for (; m + 4 <= end; m += 4) add_four(modes + m * n, n, weights.data() + m, sum.data());
-    for (; m < end; ++m) add_one(modes + m * n, n, weights[m], sum.data());
+    std::size_t r = begin;
+    for (; squares && r < end; ++r) add_square(rows + r * n, n, own[r], sum.data());
+    for (; r + 4 <= end; r += 4) add_four(rows + r * n, n, own.data() + r, sum.data());
+    for (; r < end; ++r) add_one(rows + r * n, n, own[r], sum.data());
     if (!folded) continue;
-    const auto i_class = static_cast<std::size_t>(parts_.class_of_mode[begin]);
+    const auto i_class = static_cast<std::size_t>(class_of(begin));
     squares ? parts_.fold.add_squares(i_class, sum, out) : parts_.fold.add(i_class, sum, out);
   }
 }
@@ -191,13 +218,18 @@ void PodModel::save(io::TensorFile& file, const std::string& prefix) const {
   file.set_text(prefix, nlohmann::json{{"kind", parts_.kind}}.dump());
   file.set(prefix + "/mean", parts_.mean);
   file.set(prefix + "/modes", parts_.modes);
+  const auto set = [&](const std::string& name, const std::vector<std::int32_t>& values) {
+    file.set(prefix + name, io::Tensor::copy(std::span<const std::int32_t>(values), {values.size()}));
+  };
+  if (!parts_.first_row.empty()) {
+    set("/first_row", parts_.first_row);
+    set("/mode_of", parts_.mode_of);
+  }
   if (!parts_.residual.empty()) file.set(prefix + "/residual", parts_.residual);
   parts_.coefficients->save(file, prefix + "/coefficients");
   if (parts_.fold.empty()) return;
   parts_.fold.save(file, prefix + "/fold");
-  file.set(
-      prefix + "/fold/class_of_mode",
-      io::Tensor::copy(std::span<const std::int32_t>(parts_.class_of_mode), {parts_.class_of_mode.size()}));
+  set("/fold/class_of_mode", parts_.class_of_mode);
 }
 
 const std::vector<std::string>& PodModel::kinds() {
@@ -210,16 +242,22 @@ std::unique_ptr<FieldModel> PodModel::load(const io::TensorFile& file, const std
                                            const Wanted& /*wanted*/) {
   const std::array<std::size_t, 2> plane{io::any_size, io::any_size};
   const std::array<std::size_t, 3> modes{io::any_size, io::any_size, io::any_size};
+  const bool by_row = file.has(prefix + "/first_row");
+  const auto whole_numbers = [&](const std::string& name) {
+    const std::array<std::size_t, 1> any{io::any_size};
+    const auto tensor = file.tensor(prefix + name, any);
+    return std::vector<std::int32_t>(tensor.i32().begin(), tensor.i32().end());
+  };
   Parts parts{.kind = text_of(read_description(file, prefix), "kind", file.where() + ":" + prefix),
               .mean = file.tensor(prefix + "/mean", plane),
-              .modes = file.tensor(prefix + "/modes", modes),
+              .modes = by_row ? file.tensor(prefix + "/modes", plane) : file.tensor(prefix + "/modes", modes),
               .residual = {},
               .coefficients = load_coefficient_model(file, prefix + "/coefficients"),
               .fold = SymmetryFold::load(file, prefix + "/fold")};
-  if (!parts.fold.empty()) {
-    const std::array<std::size_t, 1> any{io::any_size};
-    const auto classes = file.tensor(prefix + "/fold/class_of_mode", any).i32();
-    parts.class_of_mode.assign(classes.begin(), classes.end());
+  if (!parts.fold.empty()) parts.class_of_mode = whole_numbers("/fold/class_of_mode");
+  if (by_row) {
+    parts.first_row = whole_numbers("/first_row");
+    parts.mode_of = whole_numbers("/mode_of");
   }
   if (file.has(prefix + "/residual")) parts.residual = file.tensor(prefix + "/residual", plane);
   // Of the right type here, so that predict() never meets a wrong one.
@@ -232,16 +270,33 @@ std::unique_ptr<FieldModel> PodModel::load(const io::TensorFile& file, const std
 std::unique_ptr<PodModel> make_pod_model(std::string kind, const Eigen::VectorXd& mean, const MatrixF& modes,
                                          const Eigen::VectorXd& residual, std::size_t n_columns,
                                          std::shared_ptr<const CoefficientModel> coefficients,
-                                         SymmetryFold fold, std::vector<std::int32_t> class_of_mode) {
+                                         SymmetryFold fold, std::vector<std::int32_t> class_of_mode,
+                                         std::span<const ModePlanes> planes_of_mode) {
   check(n_columns > 0 && mean.size() % static_cast<Eigen::Index>(n_columns) == 0, "columns divide the cells");
-  return std::make_unique<PodModel>(
-      PodModel::Parts{.kind = std::move(kind),
-                      .mean = cells(mean, n_columns),
-                      .modes = by_plane(modes, n_columns, fold),
-                      .residual = residual.size() == 0 ? io::Tensor{} : cells(residual, n_columns),
-                      .coefficients = std::move(coefficients),
-                      .fold = std::move(fold),
-                      .class_of_mode = std::move(class_of_mode)});
+  const auto n_planes = static_cast<std::size_t>(mean.size()) / n_columns;
+  const auto n_modes = static_cast<std::size_t>(modes.rows());
+  std::vector<std::int32_t> first_row{0}, mode_of;
+  for (std::size_t p = 0; p < n_planes; ++p) {
+    for (std::size_t m = 0; m < n_modes; ++m) {
+      const auto [first, n] = planes_of_mode.empty() ? ModePlanes{0, n_planes} : planes_of_mode[m];
+      if (p >= first && p < first + n) mode_of.push_back(static_cast<std::int32_t>(m));
+    }
+    first_row.push_back(static_cast<std::int32_t>(mode_of.size()));
+  }
+  PodModel::Parts parts{.kind = std::move(kind),
+                        .mean = cells(mean, n_columns),
+                        .modes = stored(modes, n_columns, fold, first_row, mode_of),
+                        .residual = residual.size() == 0 ? io::Tensor{} : cells(residual, n_columns),
+                        .coefficients = std::move(coefficients),
+                        .fold = std::move(fold),
+                        .class_of_mode = std::move(class_of_mode)};
+  if (mode_of.size() < n_planes * n_modes) {
+    parts.first_row = std::move(first_row);
+    parts.mode_of = std::move(mode_of);
+  } else {
+    parts.modes = io::Tensor::copy(parts.modes.f32(), {n_planes, n_modes, parts.modes.shape()[1]});
+  }
+  return std::make_unique<PodModel>(std::move(parts));
 }
 
 }  // namespace elrom::model

@@ -12,7 +12,7 @@ namespace elrom::model {
 
 namespace {
 
-constexpr std::size_t most_groups = 16;
+constexpr std::size_t most_groups = 256;
 
 nlohmann::json to_json(const SmootherKernel& kernel) {
   return {{"antisymmetric", kernel.antisymmetric},
@@ -102,7 +102,8 @@ SmootherCoefficients::Changed SmootherCoefficients::of_other_cases(MatrixD z, co
     covariance.diagonal().array() += group.kernel.noise;
     const math::Cholesky factor(covariance);
     if (!factor.succeeded()) throw NumericalError("kernel smoother: the covariance is not positive definite");
-    groups.push_back({group.kernel, factor.solve(own), group.signal, factor.inverse_factor().cast<float>()});
+    groups.push_back(
+        {group.kernel, factor.solve(own), group.signal, factor.inverse_factor().cast<float>(), group.zone});
     first += group.weights.cols();
   }
   changed.coefficients =
@@ -171,6 +172,7 @@ void SmootherCoefficients::save(io::TensorFile& file, const std::string& prefix)
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const std::string group = prefix + "/group" + std::to_string(i);
     kernels.push_back(to_json(groups_[i].kernel));
+    kernels.back()["zone"] = groups_[i].zone;
     save_vector(file, group + "/inverse_lengths", groups_[i].kernel.inverse_lengths);
     save_vector(file, group + "/imbalance", groups_[i].kernel.imbalance);
     file.set(group + "/weights", io::Tensor::copy(groups_[i].weights));
@@ -199,6 +201,8 @@ std::unique_ptr<CoefficientModel> SmootherCoefficients::load(const io::TensorFil
     const std::string name = prefix + "/group" + std::to_string(i);
     Group group{
         kernel_of((*kernels)[i], where), load_matrix(file, name + "/weights", n_cases, io::any_size), {}, {}};
+    if (const auto zone = (*kernels)[i].find("zone"); zone != (*kernels)[i].end())  // else of format 1.3
+      group.zone = whole_number<std::size_t>(*zone);
     group.kernel.inverse_lengths = load_vector(file, name + "/inverse_lengths", features.size());
     group.kernel.imbalance = load_vector(file, name + "/imbalance", features.size());
     group.signal = load_vector(file, name + "/signal", static_cast<std::size_t>(group.weights.cols()));

@@ -122,8 +122,8 @@ TEST_P(WithoutACase, ACaseThatIsTakenOutAndPutBackChangesNothing) {
 
 TEST(ModelWithoutACase, MovesItsMean) {
   const MatrixD z = random_matrix(n_known, n_inputs, 1), coefficients = random_matrix(n_known, n_fitted, 2);
-  MatrixF modes = MatrixF::Zero(n_fitted, 4);  // orthogonal, as modes are
-  modes.diagonal() << 2, 1, 3;
+  MatrixF modes = MatrixF::Zero(n_fitted, 4);  // orthonormal, as modes are
+  modes.diagonal() << 1, -1, 1;
   const auto whole = std::make_shared<SmootherCoefficients>(smoother(z, coefficients, false));
   const std::shared_ptr<const FieldModel> model =
       make_pod_model("kernel", Eigen::VectorXd::Constant(4, 5), modes, {}, 2, whole);

@@ -57,17 +57,6 @@ Trial trial(KernelFeatures of, const MatrixXd& gram, math::Covariance covariance
 
 }  // namespace
 
-MatrixXd cross_gram(const MatrixF& a, const MatrixF& b) {
-  constexpr Index block = 1024;
-  MatrixXd gram = MatrixXd::Zero(a.rows(), b.rows());
-  for (Index begin = 0; begin < a.cols(); begin += block) {
-    const Index n = std::min(block, a.cols() - begin);
-    const MatrixD left = a.middleCols(begin, n).cast<double>(), right = b.middleCols(begin, n).cast<double>();
-    gram += left * right.transpose();
-  }
-  return gram;
-}
-
 FieldParts::FieldParts(const field::FieldData& data, std::span<const std::size_t> cases,
                        const FitContext& context)
     : classes(symmetry_classes(data.cases->mirrors.size())),
@@ -77,22 +66,27 @@ FieldParts::FieldParts(const field::FieldData& data, std::span<const std::size_t
   const auto* smoother = context.warm == nullptr ? nullptr : context.warm->smoother();
   features = features_of(*data.cases, cases, classes, names_of(smoother));
   if (smoother != nullptr && features.same_as(smoother->features())) earlier = smoother;
-  if (nothing_to_learn() || earlier_kernel(0) != nullptr) return;
+  if (nothing_to_learn() || earlier_kernel(0, 0) != nullptr) return;
   earlier = nullptr;
-  choose(*data.cases, cases, cross_gram(symmetric, symmetric));
+  choose(*data.cases, cases, zones_of(data.cases->mesh, 1).front().gram(symmetric, symmetric));
 }
 
-const model::SmootherKernel* FieldParts::earlier_kernel(std::size_t c) const {
+const model::SmootherKernel* FieldParts::earlier_kernel(std::size_t c, std::size_t zone) const {
   if (earlier == nullptr) return nullptr;
   const auto own = features.of_class(c);
-  // The last symmetric group has the field's own kernel.
+  // The last symmetric group of a zone has the zone's own kernel.
   for (const auto& group : std::views::reverse(earlier->groups())) {
-    if (group.kernel.antisymmetric != (c > 0)) continue;
+    if (group.kernel.antisymmetric != (c > 0) || group.zone != zone) continue;
     const VectorXd& used = c > 0 ? group.kernel.imbalance : group.kernel.inverse_lengths;
     if ((used.array() > 0).count() == static_cast<Index>(own.size()) && (used(own).array() > 0).all())
       return &group.kernel;
   }
   return nullptr;
+}
+
+const model::SmootherKernel& FieldParts::start(std::size_t zone) const {
+  const auto* own = earlier_kernel(0, zone);
+  return own != nullptr ? *own : first ? *first : *earlier_kernel(0, 0);
 }
 
 void FieldParts::choose(const field::CaseSet& cases, std::span<const std::size_t> rows,

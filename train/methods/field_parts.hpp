@@ -13,11 +13,9 @@
 #include "elrom/math/standardiser.hpp"
 #include "elrom/model/smoother_coefficients.hpp"
 #include "symmetry_classes.hpp"
+#include "zones.hpp"
 
 namespace elrom::methods {
-
-/// A B^T in double, (n, m). @param a (n, n_cells) @param b (m, n_cells)
-[[nodiscard]] Eigen::MatrixXd cross_gram(const MatrixF& a, const MatrixF& b);
 
 /// Derived inputs of the cases and their scales.
 struct KernelFeatures {
@@ -48,7 +46,7 @@ struct FieldParts {
   MatrixF symmetric;     // departures of the symmetric class from its mean, (n_cases, n_cells)
   Eigen::VectorXd mean;  // (n_cells)
   KernelFeatures features;
-  std::optional<model::SmootherKernel> first;            // of the least leave-one-out error
+  std::optional<model::SmootherKernel> first;  // of the least leave-one-out error, all zones together
   const model::SmootherCoefficients* earlier = nullptr;  // of the same features
 
   FieldParts(const field::FieldData& data, std::span<const std::size_t> cases, const FitContext& context);
@@ -56,8 +54,10 @@ struct FieldParts {
   [[nodiscard]] bool nothing_to_learn() const {
     return symmetric.rows() < 3 || features.of_class(0).empty() || !(symmetric.squaredNorm() > 0);
   }
-  /// The earlier kernel of a class; nullptr: none, or it knew other features.
-  [[nodiscard]] const model::SmootherKernel* earlier_kernel(std::size_t c) const;
+  /// The earlier kernel of a class in a zone; nullptr: none, or it knew other features.
+  [[nodiscard]] const model::SmootherKernel* earlier_kernel(std::size_t c, std::size_t zone) const;
+  /// Where the search for a zone's kernel begins: the earlier one, else that of all zones.
+  [[nodiscard]] const model::SmootherKernel& start(std::size_t zone) const;
 
  private:
   /// The covariance, and the form of each quantity that varies widely, of the least leave-one-out error: in

@@ -7,6 +7,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
+#include "elrom/base/parallel.hpp"
 #include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/pod.hpp"
 #include "elrom/math/statistics.hpp"
@@ -18,6 +19,7 @@
 #include "leave_one_out.hpp"
 #include "shrinkage.hpp"
 #include "smoother_modes.hpp"
+#include "zones.hpp"
 
 namespace elrom::methods {
 
@@ -27,22 +29,39 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What one class of the field becomes: its modes and what predicts them.
-struct SymmetryPart {
+/// What one class of the field becomes in one zone: its modes and what predicts them.
+struct ZonePart {
   std::vector<model::SmootherCoefficients::Group> groups;
-  MatrixF modes;  // (n_modes, n_cells)
+  Zone zone;
+  MatrixF modes;  // weighted, (n_modes, n_cells of the zone)
   std::size_t i_class = 0;
   std::vector<double> left_out_variance;  // of each mode, mean over cases of the variance when left out
   [[nodiscard]] bool empty() const { return modes.rows() == 0; }
 };
 
+struct ZoneKernel {
+  std::size_t i_zone = 0;
+  Zone zone;
+  model::SmootherKernel kernel;
+};
+
 /// What is learned of one class of the field before its modes are made.
 struct Learned {
-  model::SmootherKernel kernel;
+  std::vector<ZoneKernel> zones;  // none: it is better to predict nothing
   MatrixF shrunk;     // the cases, every wavelength and cell as far as it is trusted, (n_cases, n_cells)
   MatrixF residuals;  // (n_cases, n_cells), leave-one-out
-  bool predicts = false;
 };
+
+/// What operations on the cases give, one a zone, together. @param cases (n_cases, n_cells)
+/// @param operation_of a zone's kernel: (n, n_cases)
+template <class Operation>
+MatrixF over_zones(const std::vector<ZoneKernel>& zones, const MatrixF& cases,
+                   const Operation& operation_of) {
+  MatrixF sum = MatrixF::Zero(cases.rows(), cases.cols());
+  for (const ZoneKernel& one : zones)
+    one.zone.add(sum, operation_of(one).template cast<float>() * one.zone.part(cases));
+  return sum;
+}
 
 class KernelMethod final : public Method {
  public:
@@ -58,7 +77,7 @@ class KernelMethod final : public Method {
                                       const FitContext& context) const override {
     if (context.warm != nullptr) {
       FieldParts field(data, rows_without(folds, folds.size()), context);
-      if (field.earlier_kernel(0) != nullptr && !field.nothing_to_learn())
+      if (field.earlier_kernel(0, 0) != nullptr && !field.nothing_to_learn())
         return cross_predict_at_once(std::move(field), data, folds, context);
     }
     return cross_predict_by_fitting(*this, data, folds, context, true);
@@ -72,9 +91,12 @@ class KernelMethod final : public Method {
   [[nodiscard]] Learned learn_symmetric(MatrixF centred, const FieldParts& field,
                                         const field::FieldData& data, int n_threads) const;
   [[nodiscard]] Learned learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
-                                            const model::SmootherKernel& symmetric,
+                                            const std::vector<ZoneKernel>& symmetric,
                                             const field::FieldData& data, int n_threads) const;
-  /// @param may_drop energy that the modes left out may hold
+  /// Energy that the modes which are left out of one zone may hold.
+  [[nodiscard]] double droppable(const MatrixF& residuals, std::size_t n_zones) const {
+    return options_.dropped * math::sum_of_squares(residuals) / static_cast<double>(n_zones);
+  }
   [[nodiscard]] ModeLimits limits_of(std::size_t c, double may_drop) const {
     const auto most = c == 0 ? options_.most_modes : std::max<std::size_t>(options_.most_modes / 4, 1);
     return {most, options_.own_modes, may_drop};
@@ -86,24 +108,23 @@ class KernelMethod final : public Method {
 };
 
 /// Modes with one kernel, and what the mean variance of each is over cases that are left out.
-void add_group(SymmetryPart& part, const model::SmootherKernel& kernel, const MatrixD& z,
+void add_group(ZonePart& part, const ZoneKernel& of, const model::SmootherKernel& kernel, const MatrixD& z,
                const MatrixXd& targets) {
   const Smoother smoother(kernel, z);
   const MatrixD weights = smoother.precision * targets;
   const VectorXd signal = targets.cwiseProduct(MatrixXd(weights)).colwise().mean().transpose().cwiseMax(0);
   const double variance = std::max(0.0, smoother.precision.diagonal().cwiseInverse().mean() - kernel.noise);
   for (const double one : signal) part.left_out_variance.push_back(one * variance);
-  part.groups.push_back({kernel, weights, signal, smoother.inverse_factor.cast<float>()});
+  part.groups.push_back({kernel, weights, signal, smoother.inverse_factor.cast<float>(), of.i_zone});
 }
 
-SymmetryPart make_part(const Learned& learned, const MatrixD& z, const ModeLimits& limits, int n_threads) {
-  const MatrixF& shrunk = learned.shrunk;
-  const SmootherModes modes = modes_of(learned.kernel, z, cross_gram(shrunk, shrunk), limits, n_threads);
-  SymmetryPart part;
-  const auto rows = math::all_rows(static_cast<std::size_t>(shrunk.rows()));
-  part.modes = math::combine_rows(modes.basis, shrunk, rows, VectorXd::Zero(shrunk.cols()));
-  modes.each_group(learned.kernel, [&](const model::SmootherKernel& kernel, Index first, Index n) {
-    add_group(part, kernel, z, modes.targets.middleCols(first, n));
+ZonePart make_part(const ZoneKernel& of, const MatrixF& shrunk, const MatrixD& z, const ModeLimits& limits,
+                   int n_threads) {
+  const SmootherModes modes = modes_of(of.kernel, z, of.zone.gram(shrunk, shrunk), limits, n_threads);
+  ZonePart part{.zone = of.zone};
+  part.modes = (modes.basis.cast<float>() * of.zone.part(shrunk)) * of.zone.weights.asDiagonal();
+  modes.each_group(of.kernel, [&](const model::SmootherKernel& kernel, Index first, Index n) {
+    add_group(part, of, kernel, z, modes.targets.middleCols(first, n));
   });
   return part;
 }
@@ -113,26 +134,28 @@ Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, 
   const auto n = static_cast<double>(centred.rows());
   const auto used = field.features.of_class(0);
   const MatrixD& z = field.features.z;
-  const auto* near = field.earlier_kernel(0);
-  const auto& first = near == nullptr ? field.first.value() : *near;
-  const int passes = std::max(options_.passes, 1);
-  MatrixXd gram;
-  Learned learned{.kernel = {}, .shrunk = {}, .residuals = {}, .predicts = true};
+  Learned learned;
+  for (const Zone& zone : zones_of(data.cases->mesh, options_.zones))
+    learned.zones.push_back({learned.zones.size(), zone, field.start(learned.zones.size())});
   Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
   // Deviations of a left-out case are taken from the mean of the others: y_i n / (n - 1) on centred cases.
   const MatrixF truth = centred * static_cast<float>(n / (n - 1));
-  for (int pass = 0; pass < passes; ++pass) {
-    // An earlier kernel is near enough for the weights of the errors that the last search goes by.
-    learned.kernel = pass == 0 ? first : fit_symmetric_kernel(z, used, gram, first.covariance, near);
-    MatrixF predicted = Smoother(learned.kernel, z).leave_one_out_about_mean().cast<float>() * centred;
+  const int passes = std::max(options_.passes, 1);
+  for (int pass = 1;; ++pass) {
+    MatrixF predicted = over_zones(learned.zones, centred, [&](const ZoneKernel& one) {
+      return Smoother(one.kernel, z).leave_one_out_about_mean();
+    });
     shrinkage.learn(predicted, truth, {}, n_threads);
     learned.residuals = truth - predicted;
-    if (pass + 1 < passes) {
-      MatrixF weighted = centred;
-      shrinkage.apply(weighted, n_threads);
-      gram = cross_gram(centred, weighted);
-      gram = (0.5 * (gram + gram.transpose())).eval();
-    }
+    if (pass == passes) break;
+    MatrixF trusted = centred;
+    shrinkage.apply(trusted, n_threads);
+    base::parallel_for(learned.zones.size(), n_threads, [&](std::size_t k, int) {
+      auto& [i_zone, zone, kernel] = learned.zones[k];
+      const MatrixXd products = zone.gram(centred, trusted);
+      kernel =
+          fit_symmetric_kernel(z, used, 0.5 * (products + products.transpose()), kernel.covariance, &kernel);
+    });
   }
   shrinkage.apply(centred, n_threads);
   learned.shrunk = std::move(centred);
@@ -176,23 +199,28 @@ std::optional<AntisymmetricFit> fit_antisymmetry(const KernelFeatures& features,
 }
 
 Learned KernelMethod::learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
-                                          const model::SmootherKernel& symmetric,
+                                          const std::vector<ZoneKernel>& symmetric,
                                           const field::FieldData& data, int n_threads) const {
   Learned learned;
-  std::optional<AntisymmetricFit> fit;
-  if (options_.antisymmetric) {
-    const MatrixXd gram = cross_gram(values, values);
-    if (gram.trace() > 0) fit = fit_antisymmetry(field.features, c, symmetric, gram, field.earlier_kernel(c));
+  std::vector<MatrixXd> operations;
+  for (const auto& [i_zone, zone, kernel] : symmetric) {
+    if (!options_.antisymmetric) break;
+    const MatrixXd gram = zone.gram(values, values);
+    if (!(gram.trace() > 0)) continue;
+    auto fit = fit_antisymmetry(field.features, c, kernel, gram, field.earlier_kernel(c, i_zone));
+    if (!fit) continue;
+    learned.zones.push_back({i_zone, zone, std::move(fit->kernel)});
+    operations.push_back(std::move(fit->leave_one_out));
   }
-  if (!fit) return learned.residuals = std::move(values), learned;
-  learned.kernel = fit->kernel;
+  if (learned.zones.empty()) return learned.residuals = std::move(values), learned;
   Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
-  MatrixF predicted = fit->leave_one_out.cast<float>() * values;
+  MatrixF predicted = over_zones(learned.zones, values, [&](const ZoneKernel& one) -> const MatrixXd& {
+    return operations[static_cast<std::size_t>(&one - learned.zones.data())];
+  });
   shrinkage.learn(predicted, values, {.spectral = false, .prior = 0}, n_threads);
   learned.residuals = values - predicted;
   shrinkage.apply(values, n_threads);
   learned.shrunk = std::move(values);
-  learned.predicts = true;
   return learned;
 }
 
@@ -200,25 +228,26 @@ template <class Take>
 void KernelMethod::learn(FieldParts& field, const field::FieldData& data, std::span<const std::size_t> cases,
                          const FitContext& context, const Take& take) const {
   auto symmetric = learn_symmetric(std::move(field.symmetric), field, data, context.n_threads);
-  const auto kernel = symmetric.kernel;
+  const auto zones = symmetric.zones;
   take(std::size_t{0}, std::move(symmetric));
   for (std::size_t c = 1; c < field.classes.size(); ++c) {
     if (context.stop.stop_requested()) throw Interrupted("kernel: stopped");
-    take(c, learn_antisymmetric(project(data, cases, field.classes[c], context.n_threads), c, field, kernel,
+    take(c, learn_antisymmetric(project(data, cases, field.classes[c], context.n_threads), c, field, zones,
                                 data, context.n_threads));
   }
 }
 
 /// Per cell: root of the mean squared residual, less what the coefficients' own variance will add again.
-VectorXd residual_deviation(const MatrixF& residuals, const std::vector<SymmetryPart>& parts) {
+VectorXd residual_deviation(const MatrixF& residuals, const std::vector<ZonePart>& parts) {
   VectorXd variance = VectorXd::Zero(residuals.cols());
   for (Index i = 0; i < residuals.rows(); ++i)
     variance += residuals.row(i).transpose().cast<double>().cwiseAbs2();
   variance /= static_cast<double>(residuals.rows());
-  for (const SymmetryPart& part : parts) {
+  for (const ZonePart& part : parts) {
     for (Index m = 0; m < part.modes.rows(); ++m)
-      variance -= part.modes.row(m).transpose().cast<double>().cwiseAbs2() *
-                  part.left_out_variance[static_cast<std::size_t>(m)];
+      variance.segment(part.zone.first_cell, part.modes.cols()) -=
+          part.modes.row(m).transpose().cast<double>().cwiseAbs2() *
+          part.left_out_variance[static_cast<std::size_t>(m)];
   }
   return variance.cwiseMax(0).cwiseSqrt();
 }
@@ -234,16 +263,25 @@ std::unique_ptr<model::FieldModel> mean_model(const field::FieldData& data, cons
                                data.cases->mesh.n_columns, std::move(none));
 }
 
-MatrixF stacked(const std::vector<SymmetryPart>& parts, Index n_cells) {
+/// The modes of all parts, and what they are of.
+struct AllModes {
+  MatrixF modes;  // (n_modes, n_cells)
+  std::vector<std::int32_t> class_of;
+  std::vector<model::ModePlanes> planes_of;
+};
+
+AllModes together(const std::vector<ZonePart>& parts, Index n_cells) {
   Index n = 0;
-  for (const SymmetryPart& part : parts) n += part.modes.rows();
-  MatrixF modes(n, n_cells);
+  for (const ZonePart& part : parts) n += part.modes.rows();
+  AllModes all{MatrixF::Zero(n, n_cells), {}, {}};
   n = 0;
-  for (const SymmetryPart& part : parts) {
-    modes.middleRows(n, part.modes.rows()) = part.modes;
+  for (const ZonePart& part : parts) {
+    all.modes.block(n, part.zone.first_cell, part.modes.rows(), part.modes.cols()) = part.modes;
     n += part.modes.rows();
+    all.class_of.resize(static_cast<std::size_t>(n), static_cast<std::int32_t>(part.i_class));
+    all.planes_of.resize(static_cast<std::size_t>(n), {part.zone.first_plane, part.zone.n_planes});
   }
-  return modes;
+  return all;
 }
 
 std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& data,
@@ -253,7 +291,7 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
   if (field.nothing_to_learn())
     return mean_model(data, field.mean, math::column_moments(data.values, cases).deviation);
 
-  std::vector<SymmetryPart> parts;
+  std::vector<ZonePart> parts;
   MatrixF residuals;
   double may_drop = 0;
   learn(field, data, cases, context, [&](std::size_t c, Learned learned) {
@@ -261,31 +299,27 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
       residuals = std::move(learned.residuals);
     else
       residuals += learned.residuals;
-    if (c == 0) may_drop = options_.dropped * math::sum_of_squares(residuals);
-    if (!learned.predicts) return;
-    auto part = make_part(learned, field.features.z, limits_of(c, may_drop), context.n_threads);
-    part.i_class = c;
-    if (c == 0 || !part.empty()) parts.push_back(std::move(part));
+    if (c == 0) may_drop = droppable(residuals, learned.zones.size());
+    for (const ZoneKernel& one : learned.zones) {
+      auto part = make_part(one, learned.shrunk, field.features.z, limits_of(c, may_drop), context.n_threads);
+      part.i_class = c;
+      if (!part.empty()) parts.push_back(std::move(part));
+    }
   });
   const VectorXd residual = residual_deviation(residuals, parts);
-  if (parts.front().empty()) return mean_model(data, field.mean, residual);
+  if (parts.empty() || parts.front().i_class > 0) return mean_model(data, field.mean, residual);
 
-  std::vector<model::SmootherCoefficients::Group> groups;
-  const MatrixF modes = stacked(parts, data.values.cols());
-  std::vector<std::int32_t> class_of_mode;
-  for (const SymmetryPart& part : parts) {
-    class_of_mode.insert(class_of_mode.end(), static_cast<std::size_t>(part.modes.rows()),
-                         static_cast<std::int32_t>(part.i_class));
-  }
+  const AllModes all = together(parts, data.values.cols());
   std::vector<std::vector<int>> signs;
   for (const SymmetryClass& one : field.classes) signs.push_back(one.signs);
   const field::Mesh& mesh = data.cases->mesh;
   model::SymmetryFold fold(data.cases->mirrors, data.info.parity, signs, mesh.n_planes, mesh.n_columns);
-  for (SymmetryPart& part : parts) std::ranges::move(part.groups, std::back_inserter(groups));
+  std::vector<model::SmootherCoefficients::Group> groups;
+  for (ZonePart& part : parts) std::ranges::move(part.groups, std::back_inserter(groups));
   auto coefficients = std::make_shared<model::SmootherCoefficients>(
       field.features.derived.map, field.features.scaler, field.features.z, std::move(groups));
-  return model::make_pod_model("kernel", field.mean, modes, residual, mesh.n_columns, std::move(coefficients),
-                               std::move(fold), std::move(class_of_mode));
+  return model::make_pod_model("kernel", field.mean, all.modes, residual, mesh.n_columns,
+                               std::move(coefficients), std::move(fold), all.class_of, all.planes_of);
 }
 
 /// Each column less its mean.
@@ -308,11 +342,10 @@ MatrixXd weights_of_cases(const SmootherModes& modes, const model::SmootherKerne
 
 /// Weights of the other folds' cases in the prediction of each case, 0 for those of its own fold: (n_cases,
 /// n_cases).
-MatrixXd weights_without_own_fold(const Learned& learned, const MatrixD& z,
+MatrixXd weights_without_own_fold(const model::SmootherKernel& kernel, const MatrixXd& gram, const MatrixD& z,
                                   const std::vector<std::vector<Index>>& folds, const ModeLimits& limits,
                                   int n_threads) {
-  const bool about_mean = !learned.kernel.antisymmetric;
-  const MatrixXd gram = cross_gram(learned.shrunk, learned.shrunk);
+  const bool about_mean = !kernel.antisymmetric;
   MatrixXd weights = MatrixXd::Zero(z.rows(), z.rows());
   for (const auto& own : folds) {
     std::vector<Index> others;
@@ -321,8 +354,8 @@ MatrixXd weights_without_own_fold(const Learned& learned, const MatrixD& z,
     const MatrixD z_others = z(others, Eigen::all);
     MatrixXd products = gram(others, others);
     if (about_mean) products = about_mean_of_rows(about_mean_of_rows(products).transpose());
-    const SmootherModes modes = modes_of(learned.kernel, z_others, products, limits, n_threads);
-    const MatrixXd found = weights_of_cases(modes, learned.kernel, z_others, z(own, Eigen::all));
+    const SmootherModes modes = modes_of(kernel, z_others, products, limits, n_threads);
+    const MatrixXd found = weights_of_cases(modes, kernel, z_others, z(own, Eigen::all));
     weights(own, others) = about_mean ? about_mean_of_rows(found.transpose()).transpose() : found;
   }
   return weights;
@@ -347,12 +380,12 @@ MatrixF KernelMethod::cross_predict_at_once(FieldParts field, const field::Field
   }
   double may_drop = 0;
   learn(field, data, cases, context, [&](std::size_t c, const Learned& learned) {
-    if (c == 0) may_drop = options_.dropped * math::sum_of_squares(learned.residuals);
-    if (learned.predicts)
-      found += weights_without_own_fold(learned, field.features.z, places, limits_of(c, may_drop),
-                                        context.n_threads)
-                   .cast<float>() *
-               learned.shrunk;
+    if (c == 0) may_drop = droppable(learned.residuals, learned.zones.size());
+    found += over_zones(learned.zones, learned.shrunk, [&](const ZoneKernel& one) {
+      const MatrixXd gram = one.zone.gram(learned.shrunk, learned.shrunk);
+      return weights_without_own_fold(one.kernel, gram, field.features.z, places, limits_of(c, may_drop),
+                                      context.n_threads);
+    });
   });
   MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());
   for (Index i = 0; i < n; ++i)

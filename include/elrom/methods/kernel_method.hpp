@@ -10,6 +10,9 @@
 // leading modes of what the smoother says have lengths and noise of their own, by likelihood near those of
 // the field.
 //
+// A furnace is one thing at its bottom and another at its top: each zone of height has a smoother and modes of
+// its own, and a cell between two zones is answered by both.
+//
 // An antisymmetric part follows the imbalances of the inputs, so a mirrored case gets the mirrored field. But
 // where cases show beyond chance that one side differs from the other whatever the inputs (an outlet, or
 // the solver), that lasting asymmetry is learned too.
@@ -26,9 +29,10 @@ namespace elrom::methods {
 
 struct KernelOptions {
   /// Energy that truncating the modes of a part may drop, as a share of the error's energy
-  double dropped = 1e-3;
+  double dropped = 2e-3;
   std::size_t most_modes = 80;  ///< for the symmetric part; an antisymmetric part has at most a quarter of it
-  std::size_t own_modes = 8;    ///< leading modes of the symmetric part with lengths and noise of their own
+  std::size_t own_modes = 4;    ///< leading modes of a zone with lengths and noise of their own
+  std::size_t zones = 3;        ///< of height, each with a smoother of its own; they fade into each other
   int passes = 2;  ///< searches; from the second on, errors are weighted by what the first one trusts
   bool antisymmetric = true;  ///< learn the antisymmetric parts too, instead of predicting none
   bool shrink = true;         ///< spectral and cell-wise shrinkage

@@ -20,7 +20,11 @@ class PodModel final : public FieldModel {
   struct Parts {
     std::string kind;  ///< as in study.toml: "linear", "pod_gp", ...
     io::Tensor mean;   //!< SI, (n_planes, n_columns) f32
-    io::Tensor modes;  //!< (n_planes, n_modes, n_columns) f32; with a fold (n_planes, n_modes, n_orbits)
+    io::Tensor modes;  //!< (n_planes, n_modes, n_columns) f32; with a fold n_orbits for n_columns
+    /// Where modes are zero in some planes: `modes` is (n_rows, n_columns), with the rows of plane p from
+    /// first_row[p] to first_row[p + 1], and of each row the mode that it is. Else both are empty.
+    std::vector<std::int32_t> first_row = {};  //!< (n_planes + 1)
+    std::vector<std::int32_t> mode_of = {};    //!< (n_rows), those of a plane ascending
     //! SI, standard deviation of what the modes leave out, (n_planes, n_columns) f32; may be empty
     io::Tensor residual;
     std::shared_ptr<const CoefficientModel> coefficients;
@@ -34,7 +38,6 @@ class PodModel final : public FieldModel {
   [[nodiscard]] std::size_t n_inputs() const override { return parts_.coefficients->n_inputs(); }
   [[nodiscard]] std::size_t n_planes() const override { return n_planes_; }
   [[nodiscard]] std::size_t n_columns() const override { return n_columns_; }
-  [[nodiscard]] std::size_t n_modes() const { return n_modes_; }
   [[nodiscard]] const CoefficientModel& coefficients() const { return *parts_.coefficients; }
 
   void predict(const Query& query, std::span<float> values, std::span<float> spread,
@@ -52,10 +55,18 @@ class PodModel final : public FieldModel {
                                                         const Wanted& wanted);
 
  private:
-  /// out += sum over modes of weight * mode, or of weight * mode^2 for spreads. @param modes of one plane
-  void add_modes(const float* modes, std::span<const float> weights, bool squares, std::span<float> out,
+  /// out += sum over modes of weight * mode, or of weight * mode^2 for spreads.
+  /// @param weights (n_modes) @param out one plane, (n_columns)
+  void add_modes(std::size_t plane, std::span<const float> weights, bool squares, std::span<float> out,
                  Workspace& workspace) const;
 
+  /// The rows of `modes` that are of a plane.
+  struct Rows {
+    std::size_t first, n;
+  };
+  [[nodiscard]] Rows rows_of(std::size_t plane) const;
+  [[nodiscard]] std::size_t mode_of(std::size_t row) const;
+  void check_rows(const std::string& where) const;
   void add_modes_everywhere(std::span<const float> weights, std::span<float> out) const;
   [[nodiscard]] std::unique_ptr<FieldModel> of_other_cases(
       std::shared_ptr<const CoefficientModel> coefficients, const Eigen::VectorXd& mean_shift) const;
@@ -64,14 +75,18 @@ class PodModel final : public FieldModel {
   std::size_t n_planes_ = 0, n_columns_ = 0, n_modes_ = 0;
 };
 
+/// The planes where a mode is not zero.
+struct ModePlanes {
+  std::size_t first = 0, n = 0;
+};
+
 /// From matrices in cell order. @param mean (n_cells) @param modes (n_modes, n_cells)
 /// @param residual (n_cells), may be empty @param n_columns divides n_cells
 /// @param fold may be empty @param class_of_mode (n_modes) when it is not
-[[nodiscard]] std::unique_ptr<PodModel> make_pod_model(std::string kind, const Eigen::VectorXd& mean,
-                                                       const MatrixF& modes, const Eigen::VectorXd& residual,
-                                                       std::size_t n_columns,
-                                                       std::shared_ptr<const CoefficientModel> coefficients,
-                                                       SymmetryFold fold = {},
-                                                       std::vector<std::int32_t> class_of_mode = {});
+/// @param planes_of_mode (n_modes), or empty: all planes
+[[nodiscard]] std::unique_ptr<PodModel> make_pod_model(
+    std::string kind, const Eigen::VectorXd& mean, const MatrixF& modes, const Eigen::VectorXd& residual,
+    std::size_t n_columns, std::shared_ptr<const CoefficientModel> coefficients, SymmetryFold fold = {},
+    std::vector<std::int32_t> class_of_mode = {}, std::span<const ModePlanes> planes_of_mode = {});
 
 }  // namespace elrom::model

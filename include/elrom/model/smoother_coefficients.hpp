@@ -1,7 +1,7 @@
 #pragma once
 // Kernel smoother of mode coefficients on derived inputs, with groups of modes that have a covariance of
-// their own. Used by the method "kernel": one group for the symmetric part of a field, one for each
-// antisymmetric part.
+// their own. Used by the method "kernel": in each zone of height, one group for each leading mode of the
+// symmetric part of a field and one for the others, and one for each antisymmetric part.
 
 #include <memory>
 #include <string>
@@ -41,6 +41,7 @@ class SmootherCoefficients final : public CoefficientModel {
     MatrixD weights;         //!< coefficient = k(x) . weights, (n_cases, n_modes of the group)
     Eigen::VectorXd signal;  //!< variance of each coefficient at k = 1, (n_modes of the group)
     MatrixF inverse_factor;  //!< L^-1 of (K + noise I) = L L^T, lower triangular, (n_cases, n_cases)
+    std::size_t zone = 0;    ///< of height, that the modes belong to, counted from the bottom
   };
   /// @param z standardised derived inputs of the training cases, (n_cases, n_features)
   SmootherCoefficients(FeatureMap features, math::Standardiser scaler, MatrixD z, std::vector<Group> groups);
