@@ -68,7 +68,8 @@ Model networks(const field::CaseSet& cases, bool masked) {
   return std::make_shared<model::BandedNetworks>(std::move(parts));
 }
 
-Model pod_mlp(const field::CaseSet& cases) {
+/// @param planes of its two modes; empty: both planes
+Model pod_mlp(const field::CaseSet& cases, const std::vector<model::ModePlanes>& planes = {}) {
   model::MlpCoefficients::Parts parts{
       .inputs = model::InputScaler::fit(cases.inputs),
       .scale = Eigen::VectorXd::Ones(2),
@@ -77,7 +78,7 @@ Model pod_mlp(const field::CaseSet& cases) {
       .scores = {0.1}};
   return model::make_pod_model("pod_mlp", Eigen::VectorXd::Constant(4, 0.2), MatrixF::Constant(2, 4, 0.1F),
                                Eigen::VectorXd::Constant(4, 0.01), 2,
-                               std::make_shared<model::MlpCoefficients>(std::move(parts)));
+                               std::make_shared<model::MlpCoefficients>(std::move(parts)), {}, {}, planes);
 }
 
 /// Every kind of model that a bundle may hold, by name.
@@ -94,6 +95,7 @@ std::map<std::string, Model> models_of(field::CaseSet& cases, const field::Field
   models["networks"] = networks(cases, false);
   models["networks_masked"] = networks(cases, true);
   models["pod_mlp"] = pod_mlp(cases);
+  models["pod_of_some_planes"] = pod_mlp(cases, {{0, 2}, {1, 1}});
   models["mirror"] = std::make_shared<model::MirrorModel>(
       models["linear"], field::symmetry_group(cases.mirrors, 3, 4), data.info.parity, 2);
   models["blend"] = std::make_shared<model::BlendModel>(

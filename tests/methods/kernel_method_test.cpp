@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ranges>
+
 #include "elrom/math/kernel.hpp"
 #include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/statistics.hpp"
@@ -410,6 +412,64 @@ TEST(KernelMethod, LeadingModesHaveANoiseOfTheirOwn) {
   const double common = test::unseen_error(*make_kernel_method({.own_modes = 0}), data);
 
   EXPECT_LT(test::unseen_error(*make_kernel_method(), data), common);
+}
+
+/// Waves that one input drives at the bottom and another at the top, with noise.
+field::FieldData two_heights(const field::CaseSet& cases) {
+  field::FieldData data{&cases, field::field_info("gas_velocity_z"), {}};
+  base::Random random(base::Seed(7));
+  const auto n_cells = static_cast<Eigen::Index>(cases.mesh.n_cells());
+  data.values.resize(cases.inputs.rows(), n_cells);
+  for (Eigen::Index i = 0; i < cases.inputs.rows(); ++i) {
+    const double d50 = (cases.inputs(i, 5) - 2e-4) / 2e-5, temperature = (cases.inputs(i, 6) - 1100) / 30;
+    for (Eigen::Index c = 0; c < n_cells; ++c)
+      data.values(i, c) = static_cast<float>(
+          std::sin(1.5 * (cases.mesh.centre(c, 2) < 11.75 ? d50 : temperature)) + 0.05 * random.normal());
+  }
+  return data;
+}
+
+TEST(KernelMethod, WhatMattersAtTheBottomNeedNotMatterAtTheTop) {
+  const field::CaseSet cases = test::toy_cases(60, false);
+  const field::FieldData data = two_heights(cases);
+
+  const double everywhere = test::unseen_error(*make_kernel_method({.own_modes = 0, .zones = 1}), data);
+
+  EXPECT_LT(test::unseen_error(*make_kernel_method({.own_modes = 0}), data), 0.95 * everywhere);
+}
+
+TEST(KernelMethod, AnEarlierModelStartsEachZoneAtItsOwn) {
+  const field::CaseSet cases = test::toy_cases(40, false);
+  const field::FieldData data = two_heights(cases);
+  const auto warm = known_of(data, 40);
+
+  const auto again =
+      make_kernel_method({.own_modes = 0, .passes = 1})->fit(data, math::all_rows(40), {.warm = &warm});
+
+  const auto& earlier = smoother_of(*warm.model).groups();
+  const auto& groups = smoother_of(*again).groups();
+  ASSERT_EQ(groups.size(), 3U);
+  for (std::size_t zone = 0; zone < 3; ++zone) {
+    EXPECT_EQ(groups[zone].zone, zone);
+    const auto own =
+        std::ranges::find(std::views::reverse(earlier), zone, &model::SmootherCoefficients::Group::zone);
+    EXPECT_EQ(groups[zone].kernel.inverse_lengths, own->kernel.inverse_lengths);
+  }
+}
+
+TEST(KernelMethod, AFieldThatVariesOnlyAtTheBottomIsPredictedThereAndConstantAbove) {
+  const field::CaseSet cases = test::toy_cases(20);
+  field::FieldData data = test::toy_field(cases);
+  const auto n_above = 3 * static_cast<Eigen::Index>(cases.mesh.n_columns);
+  data.values.rightCols(n_above).setConstant(0.5F);
+
+  const auto model = make_kernel_method()->fit(data, math::all_rows(20), {});
+
+  const std::vector<double> inputs(cases.inputs.row(7).begin(), cases.inputs.row(7).end());
+  const auto values = predict(*model, cases, inputs);
+  const Eigen::Map<const Eigen::RowVectorXf> found(values.data(), data.values.cols());
+  EXPECT_TRUE(found.isApprox(data.values.row(7), 0.02F));
+  EXPECT_TRUE(found.rightCols(n_above).isConstant(0.5F, 1e-6F));
 }
 
 TEST(KernelMethod, HardCasesStayFinite) {

@@ -168,6 +168,62 @@ TEST(PodModel, SpreadAddsModeVarianceToTheResidual) {
   EXPECT_NEAR(answer.spread[3], std::sqrt(modes.col(3).squaredNorm() + mean[3] * mean[3]), 1e-5);
 }
 
+/// Modes that are zero outside some planes, and where they are not.
+struct ModesOfSomePlanes {
+  MatrixF modes = random_matrix(n_modes, n_planes* n_columns, "modes").cast<float>();
+  std::vector<ModePlanes> planes{{0, 5}, {0, 2}, {1, 3}, {4, 1}, {2, 2}, {0, 3}};
+  ModesOfSomePlanes() {
+    for (std::size_t m = 0; m < n_modes; ++m) {
+      auto mode = modes.row(static_cast<Eigen::Index>(m));
+      mode.head(static_cast<Eigen::Index>(planes[m].first * n_columns)).setZero();
+      mode.tail(static_cast<Eigen::Index>((n_planes - planes[m].first - planes[m].n) * n_columns)).setZero();
+    }
+  }
+  [[nodiscard]] std::unique_ptr<PodModel> model(bool everywhere) const {
+    const Eigen::VectorXd mean = random_matrix(n_planes * n_columns, 1, "mean");
+    return make_pod_model("linear", mean, modes, mean.cwiseAbs(), n_columns, coefficients("linear"), {}, {},
+                          everywhere ? std::vector<ModePlanes>{} : planes);
+  }
+};
+
+TEST(PodModel, ModesThatAreZeroInAPlaneAreNotStoredThere) {
+  const ModesOfSomePlanes some;
+  io::TensorFile file;
+
+  const auto whole = some.model(true), short_one = some.model(false);
+  short_one->save(file, "m");
+  const auto loaded = load_field_model(file, "m");
+
+  const Answer expected = ask(*whole, every_plane), found = ask(*loaded, every_plane);
+  for (std::size_t c = 0; c < n_planes * n_columns; ++c) {
+    EXPECT_NEAR(found.values[c], expected.values[c], 1e-5);
+    EXPECT_NEAR(found.spread[c], expected.spread[c], 1e-5);
+  }
+  EXPECT_EQ(found, ask(*short_one, every_plane));
+  EXPECT_EQ(file.tensor("m/modes", std::array<std::size_t, 2>{io::any_size, io::any_size}).shape()[0], 16U);
+}
+
+TEST(PodModel, RefusesRowsThatDoNotFit) {
+  const auto with = [](std::vector<std::int32_t> first_row, std::vector<std::int32_t> mode_of) {
+    PodModel::Parts parts{.kind = "linear", .coefficients = coefficients("linear")};
+    parts.mean = io::Tensor::copy(MatrixF(MatrixF::Zero(2, 3)));
+    parts.modes = io::Tensor::copy(MatrixF(MatrixF::Zero(3, 3)));
+    parts.first_row = std::move(first_row);
+    parts.mode_of = std::move(mode_of);
+    return PodModel(parts, "file:m");
+  };
+  const std::string message = "rows of modes do not fit mean and coefficients";
+
+  EXPECT_NO_THROW(with({0, 2, 3}, {0, 5, 1}));
+  EXPECT_ERROR(InputError, message, with({0, 3}, {0, 5, 1}));        // one plane
+  EXPECT_ERROR(InputError, message, with({1, 2, 3}, {0, 5, 1}));     // does not begin at the first row
+  EXPECT_ERROR(InputError, message, with({0, 2, 4}, {0, 5, 1}));     // ends behind the last
+  EXPECT_ERROR(InputError, message, with({0, 4, 3}, {0, 5, 1}));     // backwards
+  EXPECT_ERROR(InputError, message, with({0, 2, 3}, {0, 6, 1}));     // six modes: 0 to 5
+  EXPECT_ERROR(InputError, message, with({0, 2, 3}, {0, -1, 1}));    //
+  EXPECT_ERROR(InputError, message, with({0, 2, 4}, {0, 5, 1, 2}));  // three rows are there
+}
+
 TEST(PodModel, RefusesModesOfAnotherSize) {
   PodModel::Parts parts{.kind = "linear", .coefficients = coefficients("linear")};
   parts.mean = io::Tensor::copy(MatrixF(MatrixF::Zero(2, 3)));

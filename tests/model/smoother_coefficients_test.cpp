@@ -69,6 +69,21 @@ TEST(SmootherKernel, AnAntisymmetricOneIsOddButForItsConstant) {
   EXPECT_NEAR(odd(z.data(), other.data()), product * (0.3 + near), 1e-12);
 }
 
+TEST(SmootherCoefficients, ReadsBackTheZonesOfItsGroups) {
+  const MatrixD z = random_matrix(n_known, n_inputs, 1), coefficients = random_matrix(n_known, n_fitted, 2);
+  const auto one = smoother(z, coefficients, false);
+  auto groups = one.groups();
+  groups.front().zone = 2;
+  io::TensorFile file;
+
+  SmootherCoefficients(one.features(), math::Standardiser(Eigen::VectorXd::Zero(2), Eigen::VectorXd::Ones(2)),
+                       z, groups)
+      .save(file, "m");
+
+  const auto loaded = load_coefficient_model(file, "m");
+  EXPECT_EQ(dynamic_cast<const SmootherCoefficients&>(*loaded).groups()[0].zone, 2U);
+}
+
 TEST(SmootherCoefficients, ReadsBackItsCovariance) {
   const MatrixD z = random_matrix(n_known, n_inputs, 1), coefficients = random_matrix(n_known, n_fitted, 2);
   for (const auto covariance : {math::Covariance::matern52, math::Covariance::gaussian}) {

@@ -153,6 +153,7 @@ Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, 
     base::parallel_for(learned.zones.size(), n_threads, [&](std::size_t k, int) {
       auto& [i_zone, zone, kernel] = learned.zones[k];
       const MatrixXd products = zone.gram(centred, trusted);
+      if (!(products.trace() > 0)) return;  // nothing varies at these heights
       kernel =
           fit_symmetric_kernel(z, used, 0.5 * (products + products.transpose()), kernel.covariance, &kernel);
     });
