@@ -2,19 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/toy_furnace.hpp"
 
 namespace elrom::methods {
 namespace {
 
 /// 66 planes of 2 cells, as high as the furnace of design.
-field::Mesh tall() { return field::make_furnace_mesh({}, 1, 2, 66); }
+field::CaseSet tall() { return {.mesh = field::make_furnace_mesh({}, 1, 2, 66)}; }
 
 TEST(Zones, WeightsAddUpToOneOnEveryPlane) {
-  const field::Mesh mesh = tall();
+  const field::CaseSet cases = tall();
   for (const std::size_t n : {2U, 3U, 5U}) {
     MatrixF sum = MatrixF::Zero(1, 132);
-    for (const Zone& zone : zones_of(mesh, n)) zone.add(sum, MatrixF::Ones(1, zone.weights.size()));
+    for (const Zone& zone : zones_of(cases, n)) zone.add(sum, MatrixF::Ones(1, zone.weights.size()));
     EXPECT_TRUE(sum.isOnes(1e-6F)) << n << " zones";
   }
 }
@@ -33,16 +35,25 @@ TEST(Zones, NeighboursFadeIntoEachOtherHalfwayBetweenTheirMiddles) {
 }
 
 TEST(Zones, FewPlanesAreOneZone) {
-  const auto zones = zones_of(field::make_furnace_mesh({}, 4, 6, 5), 3);
+  const auto zones = zones_of({.mesh = field::make_furnace_mesh({}, 4, 6, 5)}, 3);
 
   ASSERT_EQ(zones.size(), 1U);
   EXPECT_EQ(zones[0].n_planes, 5U);
   EXPECT_TRUE(zones[0].weights.isOnes(0));
 }
 
+TEST(Zones, AMirrorThatExchangesPlanesLeavesOneZone) {
+  field::CaseSet cases = test::toy_cases(2);
+  ASSERT_EQ(zones_of(cases, 3).size(), 3U);
+  cases.mirrors.push_back(cases.mirrors.front());
+  std::ranges::reverse(cases.mirrors.back().cell_from);  // upside down
+
+  EXPECT_EQ(zones_of(cases, 3).size(), 1U);
+}
+
 TEST(Zones, ProductsAreWeightedByCell) {
-  const field::Mesh mesh = tall();
-  const Zone zone = zones_of(mesh, 3)[1];
+  const field::CaseSet cases = tall();
+  const Zone zone = zones_of(cases, 3)[1];
   const MatrixF a = MatrixF::Random(3, 132), b = MatrixF::Random(2, 132);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 2);
   for (Eigen::Index c = 0; c < zone.weights.size(); ++c)

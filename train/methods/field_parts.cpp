@@ -68,7 +68,7 @@ FieldParts::FieldParts(const field::FieldData& data, std::span<const std::size_t
   if (smoother != nullptr && features.same_as(smoother->features())) earlier = smoother;
   if (nothing_to_learn() || earlier_kernel(0, 0) != nullptr) return;
   earlier = nullptr;
-  choose(*data.cases, cases, zones_of(data.cases->mesh, 1).front().gram(symmetric, symmetric));
+  choose(*data.cases, cases, zones_of(*data.cases, 1).front().gram(symmetric, symmetric));
 }
 
 const model::SmootherKernel* FieldParts::earlier_kernel(std::size_t c, std::size_t zone) const {

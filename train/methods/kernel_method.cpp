@@ -122,7 +122,10 @@ ZonePart make_part(const ZoneKernel& of, const MatrixF& shrunk, const MatrixD& z
                    int n_threads) {
   const SmootherModes modes = modes_of(of.kernel, z, of.zone.gram(shrunk, shrunk), limits, n_threads);
   ZonePart part{.zone = of.zone};
-  part.modes = (modes.basis.cast<float>() * of.zone.part(shrunk)) * of.zone.weights.asDiagonal();
+  const MatrixF own = of.zone.part(shrunk);
+  const auto rows = math::all_rows(static_cast<std::size_t>(own.rows()));
+  part.modes = math::combine_rows(modes.basis, own, rows, VectorXd::Zero(own.cols()), n_threads) *
+               of.zone.weights.asDiagonal();
   modes.each_group(of.kernel, [&](const model::SmootherKernel& kernel, Index first, Index n) {
     add_group(part, of, kernel, z, modes.targets.middleCols(first, n));
   });
@@ -135,7 +138,7 @@ Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, 
   const auto used = field.features.of_class(0);
   const MatrixD& z = field.features.z;
   Learned learned;
-  for (const Zone& zone : zones_of(data.cases->mesh, options_.zones))
+  for (const Zone& zone : zones_of(*data.cases, options_.zones))
     learned.zones.push_back({learned.zones.size(), zone, field.start(learned.zones.size())});
   Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
   // Deviations of a left-out case are taken from the mean of the others: y_i n / (n - 1) on centred cases.

@@ -16,6 +16,12 @@ double weight_of(std::size_t plane, double middle, double reach) {
   return std::clamp(0.5 - beyond / fading, 0.0, 1.0);
 }
 
+bool keeps_planes(const field::Mirror& mirror, std::size_t n_columns) {
+  for (std::size_t c = 0; c < mirror.cell_from.size(); ++c)
+    if (static_cast<std::size_t>(mirror.cell_from[c]) / n_columns != c / n_columns) return false;
+  return true;
+}
+
 }  // namespace
 
 Eigen::MatrixXd Zone::gram(const MatrixF& a, const MatrixF& b) const {
@@ -34,9 +40,11 @@ void Zone::add(MatrixF& sum, const MatrixF& predicted) const {
   sum.middleCols(first_cell, weights.size()) += predicted * weights.asDiagonal();
 }
 
-std::vector<Zone> zones_of(const field::Mesh& mesh, std::size_t n_zones) {
+std::vector<Zone> zones_of(const field::CaseSet& cases, std::size_t n_zones) {
+  const field::Mesh& mesh = cases.mesh;
   const auto n_columns = static_cast<Eigen::Index>(mesh.n_columns);
-  if (n_zones < 2 || mesh.n_planes < 2 * n_zones) {
+  const auto keeps = [&](const field::Mirror& mirror) { return keeps_planes(mirror, mesh.n_columns); };
+  if (n_zones < 2 || mesh.n_planes < 2 * n_zones || !std::ranges::all_of(cases.mirrors, keeps)) {
     const auto n_cells = static_cast<Eigen::Index>(mesh.n_cells());
     return {{.n_planes = mesh.n_planes, .weights = Eigen::RowVectorXf::Ones(n_cells)}};
   }

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "elrom/field/mesh.hpp"
+#include "elrom/field/case_set.hpp"
 #include "elrom/math/matrix.hpp"
 
 namespace elrom::methods {
@@ -26,8 +26,8 @@ struct Zone {
 };
 
 /// Zones with their middles at equal distances from the first plane to the last, so those at the ends are half
-/// as high; on every plane the weights add up to 1. Where zones would have less than two planes each, one zone
-/// that is everything.
-[[nodiscard]] std::vector<Zone> zones_of(const field::Mesh& mesh, std::size_t n_zones);
+/// as high; on every plane the weights add up to 1. Where zones would have less than two planes each, or a
+/// mirror takes cells to other planes, one zone that is everything.
+[[nodiscard]] std::vector<Zone> zones_of(const field::CaseSet& cases, std::size_t n_zones);
 
 }  // namespace elrom::methods

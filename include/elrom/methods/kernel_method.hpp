@@ -1,6 +1,6 @@
 #pragma once
-// Method "kernel": one kernel smoother a field on derived inputs, for the symmetric and
-// each antisymmetric part of the field on its own. Hyperparameters, and how far every
+// Method "kernel": kernel smoothers on derived inputs, for the symmetric and each antisymmetric part of a field
+// and each zone of height on its own. Hyperparameters, and how far every
 // wavelength and every cell is trusted, minimise the leave-one-case-out error in closed
 // form (Allen 1974; Craven & Wahba 1979 for linear smoothers). So do the covariance (Matern 5/2 or
 // Gaussian) and the form in which an input enters that varies by more than a factor of two (itself,
