@@ -1,10 +1,10 @@
-// bench-kernel: what each part of the kernel method buys, judged by training cases alone. Rows differ from the
-// first in one option.
+// bench-kernel: what each part of the kernel method buys, judged by training cases alone. Rows differ from
+// the first in one option.
 //
 // Cases that the kernel has not seen: with --learn N it learns from the first N training cases and is judged
-// by the others, otherwise by ten folds of near neighbours. Error: NRMSE, mean of the fields; behind it the
-// change of the squared error against the first row, in percent, its mean over the fields and the standard
-// error of that over the cases. Seconds are those of all fits.
+// by the others, otherwise by ten folds, each of every tenth case by load. Error: NRMSE, mean of the fields;
+// behind it the change of the squared error against the first row, in percent, its mean over the fields and
+// the standard error of that over the cases. Seconds are those of all fits.
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
-// Zones of height. A furnace is one thing at its bottom and another at its top: what inputs do to a field, and
-// how fast, changes with height, so one smoother for all heights is right nowhere. Each zone has its own, and
-// zones fade into each other, so no seam is seen. Internal to study.
+// Zones of height. A furnace is one thing at its bottom and another at its top: what inputs do to a field
+// changes with height, and one smoother for all heights is right nowhere. Each zone has its own, and zones
+// fade into each other, so no seam is seen. Internal to study.
 
 #include <Eigen/Core>
 #include <vector>
@@ -25,9 +25,9 @@ struct Zone {
   void add(MatrixF& sum, const MatrixF& predicted) const;
 };
 
-/// Zones with their middles at equal distances from the first plane to the last, so those at the ends are half
-/// as high; on every plane the weights add up to 1. Where zones would have less than two planes each, or a
-/// mirror takes cells to other planes, one zone that is everything.
+/// Zones with their middles at equal distances from the first plane to the last, so those at the ends are
+/// half as high; on every plane the weights add up to 1. Where zones would have less than two planes each, or
+/// a mirror takes cells to other planes, one zone that is everything.
 [[nodiscard]] std::vector<Zone> zones_of(const field::CaseSet& cases, std::size_t n_zones);
 
 }  // namespace elrom::methods

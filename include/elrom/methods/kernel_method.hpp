@@ -1,17 +1,16 @@
 #pragma once
-// Method "kernel": kernel smoothers on derived inputs, for the symmetric and each antisymmetric part of a field
-// and each zone of height on its own. Hyperparameters, and how far every
-// wavelength and every cell is trusted, minimise the leave-one-case-out error in closed
-// form (Allen 1974; Craven & Wahba 1979 for linear smoothers). So do the covariance (Matern 5/2 or
-// Gaussian) and the form in which an input enters that varies by more than a factor of two (itself,
-// logarithm, inverse).
+// Method "kernel": kernel smoothers on derived inputs, for the symmetric and each antisymmetric part of a
+// field and each zone of height on its own. Hyperparameters, and how far every wavelength and every cell is
+// trusted, minimise the leave-one-case-out error in closed form (Allen 1974; Craven & Wahba 1979 for linear
+// smoothers). So do the covariance (Matern 5/2 or Gaussian) and the form in which an input enters that varies
+// by more than a factor of two (itself, logarithm, inverse).
 //
 // One noise for all that a field does smooths its leading modes too much, and the rest too little: the
 // leading modes of what the smoother says have lengths and noise of their own, by likelihood near those of
 // the field.
 //
-// A furnace is one thing at its bottom and another at its top: each zone of height has a smoother and modes of
-// its own, and a cell between two zones is answered by both.
+// A furnace is one thing at its bottom and another at its top: each zone of height has a smoother and modes
+// of its own, and a cell between two zones is answered by both.
 //
 // An antisymmetric part follows the imbalances of the inputs, so a mirrored case gets the mirrored field. But
 // where cases show beyond chance that one side differs from the other whatever the inputs (an outlet, or
