@@ -220,7 +220,7 @@ TEST(PodModel, RefusesRowsThatDoNotFit) {
   EXPECT_ERROR(InputError, message, with({0, 2, 4}, {0, 5, 1}));     // ends behind the last
   EXPECT_ERROR(InputError, message, with({0, 4, 3}, {0, 5, 1}));     // backwards
   EXPECT_ERROR(InputError, message, with({0, 2, 3}, {0, 6, 1}));     // six modes: 0 to 5
-  EXPECT_ERROR(InputError, message, with({0, 2, 3}, {0, -1, 1}));    //
+  EXPECT_ERROR(InputError, message, with({0, 2, 3}, {0, -1, 1}));    // no mode
   EXPECT_ERROR(InputError, message, with({0, 2, 4}, {0, 5, 1, 2}));  // three rows are there
 }
 
