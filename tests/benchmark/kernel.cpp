@@ -127,7 +127,7 @@ class Workbench {
     const methods::FitContext context{
         .seed = base::Seed(1), .n_threads = options_.threads, .stop = base::interrupt_token()};
     const benchmark::Stopwatch watch;
-    methods::Folds folds = methods::spread_folds(cases_, judged_, 10);
+    methods::Folds folds = methods::spread_folds(cases_, judged_, options_.small ? 4 : 10);
     MatrixF predicted;
     if (learned_.empty()) {
       predicted = method->cross_predict(data_, folds, context);
