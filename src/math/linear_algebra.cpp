@@ -13,6 +13,12 @@ SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
   return {solver.eigenvalues(), solver.eigenvectors(), solver.info() == Eigen::Success};
 }
 
+MatrixXd centred_products(MatrixXd gram) {
+  gram.rowwise() -= gram.colwise().mean().eval();
+  gram.colwise() -= gram.rowwise().mean().eval();
+  return gram;
+}
+
 MatrixXd least_norm_solution(const MatrixXd& matrix, const MatrixXd& right) {
   const SymmetricEigen eigen = symmetric_eigen(matrix);
   const double zero = static_cast<double>(matrix.rows()) * std::numeric_limits<double>::epsilon() *

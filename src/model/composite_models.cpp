@@ -77,6 +77,13 @@ std::unique_ptr<FieldModel> BlendModel::without_case(std::size_t i_case) const {
 std::unique_ptr<FieldModel> with_case(const FieldModel& model, std::span<const double> inputs,
                                       std::span<const float> values) {
   if (const auto* modes = dynamic_cast<const PodModel*>(&model)) return modes->with_case(inputs, values);
+  if (const auto* scaled = dynamic_cast<const ScaledModel*>(&model)) {
+    std::vector<float> own(values.begin(), values.end());
+    const float scale = scaled->scale(inputs);
+    for (float& value : own) value /= scale;
+    auto changed = with_case(*scaled->model(), inputs, own);
+    return changed ? std::make_unique<ScaledModel>(scaled->logarithm(), std::move(changed)) : nullptr;
+  }
   const auto* blend = dynamic_cast<const BlendModel*>(&model);
   if (blend == nullptr) return nullptr;
   auto parts = blend->members();
@@ -120,6 +127,47 @@ std::unique_ptr<FieldModel> BlendModel::load(const io::TensorFile& file, const s
         {{first, first + per_part}, load_field_model(file, prefix + "/part" + std::to_string(i), wanted)});
   }
   return std::make_unique<BlendModel>(std::move(parts), where);
+}
+
+ScaledModel::ScaledModel(FeatureMap logarithm, std::shared_ptr<const FieldModel> model,
+                         const std::string& where)
+    : logarithm_(std::move(logarithm)), model_(std::move(model)) {
+  if (logarithm_.size() == 1 && logarithm_.n_inputs() == n_inputs()) return;
+  throw InputError({.what = "scale of a model does not fit it",
+                    .where = where,
+                    .found = std::to_string(logarithm_.size()) + " features of " +
+                             std::to_string(logarithm_.n_inputs()) + " inputs",
+                    .expected = "one of " + std::to_string(n_inputs()) + " inputs"});
+}
+
+float ScaledModel::scale(std::span<const double> inputs) const {
+  return static_cast<float>(std::exp(logarithm_.features().front().value(inputs)));
+}
+
+void ScaledModel::predict(const Query& query, std::span<float> values, std::span<float> spread,
+                          Workspace& workspace) const {
+  model_->predict(query, values, spread, workspace);
+  const float factor = scale(query.inputs);
+  for (float& v : values) v *= factor;
+  for (float& s : spread) s *= factor;
+}
+
+std::unique_ptr<FieldModel> ScaledModel::without_case(std::size_t i_case) const {
+  auto reduced = model_->without_case(i_case);
+  return reduced ? std::make_unique<ScaledModel>(logarithm_, std::move(reduced)) : nullptr;
+}
+
+void ScaledModel::save(io::TensorFile& file, const std::string& prefix) const {
+  file.set_text(prefix, nlohmann::json{{"kind", "scaled"}}.dump());
+  logarithm_.save(file, prefix + "/logarithm");
+  model_->save(file, prefix + "/model");
+}
+
+std::unique_ptr<FieldModel> ScaledModel::load(const io::TensorFile& file, const std::string& prefix,
+                                              const Wanted& wanted) {
+  return std::make_unique<ScaledModel>(FeatureMap::load(file, prefix + "/logarithm"),
+                                       load_field_model(file, prefix + "/model", wanted),
+                                       file.where() + ":" + prefix);
 }
 
 namespace {

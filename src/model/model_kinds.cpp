@@ -15,6 +15,7 @@ std::span<const ModelKind> model_kinds() {
     std::vector<ModelKind> table{{"networks", BandedNetworks::load},
                                  {"nearest", NearestModel::load},
                                  {"blend", BlendModel::load},
+                                 {"scaled", ScaledModel::load},
                                  {"mirror", MirrorModel::load}};
     for (const std::string& kind : PodModel::kinds()) table.push_back({kind, PodModel::load});
     return table;

@@ -46,6 +46,7 @@ std::vector<Variant> variants() {
   add("one_zone", "one smoother for all heights", [](auto& o) { o.zones = 1; });
   add("two_zones", "two zones of height", [](auto& o) { o.zones = 2; });
   add("five_zones", "five zones of height", [](auto& o) { o.zones = 5; });
+  add("no_scale", "the field itself, not over a scale", [](auto& o) { o.scale = false; });
   add("no_own_modes", "no mode has lengths and noise of its own", [](auto& o) { o.own_modes = 0; });
   add("two_own_modes", "two modes a zone have", [](auto& o) { o.own_modes = 2; });
   add("eight_own_modes", "eight modes a zone have", [](auto& o) { o.own_modes = 8; });

@@ -95,6 +95,7 @@ Json compare(const std::vector<Json>& reports) {
 int run(const Options& options) {
   const test::TemporaryFolder temporary;
   const auto folder = options.folder.empty() ? temporary.path() : options.folder;
+  std::filesystem::create_directories(folder);
   const auto store = field::SnapshotStore::open(options.store);
   std::vector<Json> reports;
   for (int copy = 0; copy <= options.copies; ++copy)

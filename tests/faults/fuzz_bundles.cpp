@@ -100,6 +100,10 @@ std::map<std::string, Model> models_of(field::CaseSet& cases, const field::Field
       models["linear"], field::symmetry_group(cases.mirrors, 3, 4), data.info.parity, 2);
   models["blend"] = std::make_shared<model::BlendModel>(
       std::vector<model::BlendModel::Member>{{{0.5}, models["nearest"]}, {{0.5}, models["pod_mlp"]}});
+  models["scaled"] = std::make_shared<model::ScaledModel>(
+      model::FeatureMap({{"scale", {{model::FeatureTerm::Kind::logarithm, 1, {{0}, {1}, 0}, {}, 1e-3}}}},
+                        cases.schema.size()),
+      models["linear"]);
   models["blend_by_column"] = std::make_shared<model::BlendModel>(std::vector<model::BlendModel::Member>{
       {{0.2, 0.8}, models["linear"]}, {{0.8, 0.2}, models["nearest"]}});
   return models;

@@ -27,6 +27,15 @@ MatrixXd lower_only(const MatrixXd& matrix) {
   return lower;
 }
 
+TEST(CentredProducts, AreThoseOfRowsLessTheirMean) {
+  const MatrixXd rows = random_positive(7);
+  const MatrixXd centred = rows.rowwise() - rows.colwise().mean();
+
+  const MatrixXd products = centred_products(rows * rows.transpose());
+
+  EXPECT_TRUE(products.isApprox(centred * centred.transpose(), 1e-12));
+}
+
 TEST(SymmetricEigen, KnowsATwoByTwoByHand) {
   const SymmetricEigen eigen = symmetric_eigen((MatrixXd(2, 2) << 2, 1, 1, 2).finished());
 

@@ -9,6 +9,7 @@
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/peers.hpp"
+#include "elrom/model/composite_models.hpp"
 #include "elrom/model/pod_model.hpp"
 #include "elrom/model/smoother_coefficients.hpp"
 #include "leave_one_out.hpp"
@@ -370,6 +371,8 @@ struct InverseWorld {
 };
 
 const model::SmootherCoefficients& smoother_of(const model::FieldModel& model) {
+  if (const auto* scaled = dynamic_cast<const model::ScaledModel*>(&model))
+    return smoother_of(*scaled->model());
   const auto& modes = dynamic_cast<const model::PodModel&>(model);
   return dynamic_cast<const model::SmootherCoefficients&>(modes.coefficients());
 }
@@ -469,7 +472,54 @@ TEST(KernelMethod, AFieldThatVariesOnlyAtTheBottomIsPredictedThereAndConstantAbo
   const auto values = predict(*model, cases, inputs);
   const Eigen::Map<const Eigen::RowVectorXf> found(values.data(), data.values.cols());
   EXPECT_TRUE(found.isApprox(data.values.row(7), 0.02F));
-  EXPECT_TRUE(found.rightCols(n_above).isConstant(0.5F, 1e-6F));
+  EXPECT_TRUE(found.rightCols(n_above).isConstant(0.5F, 1e-4F));
+}
+
+/// A field whose shape follows the temperature, and its magnitude the square of the diameter.
+field::FieldData field_by_diameter(const field::CaseSet& cases) {
+  field::FieldData data{&cases, field::field_info("pressure"), {}};
+  base::Random random(base::Seed(31));
+  data.values.resize(cases.inputs.rows(), static_cast<Eigen::Index>(cases.mesh.n_cells()));
+  for (Eigen::Index i = 0; i < data.values.rows(); ++i) {
+    const double magnitude = std::pow(cases.inputs(i, 5) / 2e-4, 2),
+                 warmth = (cases.inputs(i, 6) - 1100) / 30;
+    for (Eigen::Index c = 0; c < data.values.cols(); ++c) {
+      const double height = cases.mesh.centre(c, 2) / 20;
+      data.values(i, c) = static_cast<float>(
+          magnitude * (2 + std::cos(height) + std::sin(warmth + height) + 0.1 * random.normal()));
+    }
+  }
+  return data;
+}
+
+TEST(KernelMethod, AFieldIsLearnedOverWhatItsMagnitudeFollows) {
+  const field::CaseSet cases = test::toy_cases(30);
+  const field::FieldData data = field_by_diameter(cases);
+  KernelOptions unscaled;
+  unscaled.scale = false;
+
+  const auto model = make_kernel_method()->fit(data, math::all_rows(30), {});
+
+  const auto* scaled = dynamic_cast<const model::ScaledModel*>(model.get());
+  ASSERT_NE(scaled, nullptr);
+  const auto& terms = scaled->logarithm().features().front().terms;
+  ASSERT_EQ(terms.size(), 3U);  // all gas, diameter, temperature
+  EXPECT_NEAR(terms[1].coefficient, 2, 0.05);
+  EXPECT_NEAR(terms[0].coefficient, 0, 0.05);
+  EXPECT_LT(test::unseen_error(*make_kernel_method(), data),
+            0.98 * test::unseen_error(*make_kernel_method(unscaled), data));
+}
+
+TEST(KernelMethod, AFieldWhoseMagnitudeFollowsNothingHasNoScale) {
+  const field::CaseSet cases = test::toy_cases(30);
+  field::FieldData data = field_by_diameter(cases);
+  base::Random random(base::Seed(32));
+  for (Eigen::Index i = 0; i < data.values.rows(); ++i)
+    data.values.row(i).array() = static_cast<float>(random.normal());
+
+  const auto model = make_kernel_method()->fit(data, math::all_rows(30), {});
+
+  EXPECT_EQ(dynamic_cast<const model::ScaledModel*>(model.get()), nullptr);
 }
 
 TEST(KernelMethod, HardCasesStayFinite) {

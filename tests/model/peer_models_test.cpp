@@ -57,6 +57,11 @@ std::vector<double> column_weights() {
   return weights;
 }
 
+/// log(2) + the second input.
+FeatureMap a_logarithm() {
+  return FeatureMap({{"scale", {{FeatureTerm::Kind::value, 1, {{1}, {1.0}, std::log(2.0)}, {}, 0}}}}, 3);
+}
+
 std::shared_ptr<FieldModel> make(const std::string& kind) {
   if (kind == "nearest") {
     const Parts p;
@@ -71,6 +76,7 @@ std::shared_ptr<FieldModel> make(const std::string& kind) {
     return std::make_shared<BlendModel>(
         std::vector<BlendModel::Member>{{column_weights(), make("linear")}, {{0.75}, make("pod_rbf")}});
   }
+  if (kind == "scaled") return std::make_shared<ScaledModel>(a_logarithm(), make("pod_gp"));
   const Eigen::VectorXd mean = random_matrix(n_planes * n_columns, 1, "mean");
   const MatrixF modes = random_matrix(n_modes, n_planes * n_columns, "modes").cast<float>();
   return make_pod_model(kind, mean, modes, mean.cwiseAbs(), n_columns, coefficients(kind));
@@ -94,7 +100,7 @@ const std::vector<std::int32_t> every_plane{0, 1, 2, 3, 4};
 class EveryModel : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Peers, EveryModel,
                          ::testing::Values("nearest", "linear", "pod_gp", "pod_gp_per_mode", "pod_rbf",
-                                           "blend", "blend_by_column"));
+                                           "blend", "blend_by_column", "scaled"));
 
 TEST_P(EveryModel, IsTheSameAfterSaveAndLoad) {
   const auto model = make(GetParam());
@@ -289,6 +295,26 @@ TEST(BlendModel, RefusesWeightsForOtherColumns) {
   make("blend_by_column")->save(file, "m");
   file.set("m/weights", io::Tensor::copy(std::span<const double>(std::vector<double>(6, 0.5)), {2, 3}));
   EXPECT_ERROR(InputError, "one a column", load_field_model(file, "m"));
+}
+
+TEST(ScaledModel, IsTheModelTimesTheScaleOfTheInputs) {
+  const std::vector<double> inputs{0.3, -0.7, 0.2};
+  const Answer scaled = ask(*make("scaled"), every_plane, inputs),
+               own = ask(*make("pod_gp"), every_plane, inputs);
+  const double scale = 2 * std::exp(-0.7);
+
+  for (std::size_t i = 0; i < own.values.size(); ++i) {
+    EXPECT_NEAR(scaled.values[i], scale * own.values[i], 1e-5);
+    EXPECT_NEAR(scaled.spread[i], scale * own.spread[i], 1e-5);
+  }
+  EXPECT_EQ(make("scaled")->kind(), "pod_gp");
+}
+
+TEST(ScaledModel, RefusesAScaleThatIsNotOneFeatureOfTheSameInputs) {
+  EXPECT_ERROR(InputError, "found 0 features of 3 inputs, expected one of 3 inputs",
+               ScaledModel(FeatureMap({}, 3), make("linear")));
+  EXPECT_ERROR(InputError, "found 1 features of 4 inputs",
+               ScaledModel(FeatureMap({{"one", {}}}, 4), make("linear")));
 }
 
 TEST(BlendModel, RefusesAnAbsurdNumberOfParts) {

@@ -173,6 +173,19 @@ TEST(ModelWithoutACase, MovesItsMean) {
   std::vector<float> mixed(4);
   blended->predict({{inputs.data(), 2}, planes}, mixed, {}, workspace);
   for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(mixed[c], values[c], 1e-5);
+
+  // Over a scale of 3 the same cases are a third as large.
+  const ScaledModel scaled(
+      FeatureMap({{"scale", {{FeatureTerm::Kind::value, 1, {{}, {}, std::log(3.0)}, {}, 0}}}}, 2), model);
+  const auto scaled_without = scaled.without_case(2);
+  ASSERT_NE(scaled_without, nullptr);
+  scaled_without->predict({{inputs.data(), 2}, planes}, mixed, {}, workspace);
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(mixed[c], 3 * values[c], 1e-4);
+  for (float& value : own) value *= 3;
+  const auto scaled_again = with_case(*scaled_without, {z.row(2).data(), 2}, own);
+  ASSERT_NE(scaled_again, nullptr);
+  scaled_again->predict({{inputs.data(), 2}, planes}, mixed, {}, workspace);
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(mixed[c], 3 * whole_values[c], 3e-4);
 }
 
 }  // namespace

@@ -37,13 +37,18 @@ class Builder {
           const std::vector<SymmetryClass>& classes, std::span<const std::string> wanted)
       : cases_(cases), rows_(rows), classes_(classes), wanted_(wanted) {
     for (const auto& orbit : input_orbits(cases)) add_quantity(orbit);
+    for (const Quantity& q : quantities_) {
+      if (!is_inlet(q)) continue;
+      gas_.inputs.insert(gas_.inputs.end(), q.sum.inputs.begin(), q.sum.inputs.end());
+      gas_.weights.insert(gas_.weights.end(), q.sum.weights.begin(), q.sum.weights.end());
+    }
   }
 
   DerivedInputs build() {
     add_symmetric();
     for (std::size_t c = 1; c < classes_.size(); ++c) add_imbalances(c);
     return {model::FeatureMap(std::move(features_), static_cast<std::size_t>(cases_.inputs.cols())),
-            std::move(class_of_), std::move(forms_)};
+            std::move(class_of_), std::move(forms_), scales()};
   }
 
  private:
@@ -63,6 +68,8 @@ class Builder {
     return range;
   }
 
+  [[nodiscard]] static bool is_inlet(const Quantity& q) { return q.unit == "kg/s" && q.range.least > 0; }
+
   void add_quantity(const std::vector<std::size_t>& orbit) {
     Quantity q{cases_.schema[orbit.front()].name,
                orbit,
@@ -77,11 +84,15 @@ class Builder {
     quantities_.push_back(std::move(q));
   }
 
-  /// Keeps a feature that varies.
-  void add(Feature feature, std::size_t class_index) {
+  [[nodiscard]] bool varies(const Feature& feature) const {
     math::RunningMoments moments;
     for (std::size_t row : rows_) moments.add(feature.value(inputs_of(row)));
-    if (!(moments.deviation() > 1e-9 * std::max(1.0, std::abs(moments.mean())))) return;
+    return moments.deviation() > 1e-9 * std::max(1.0, std::abs(moments.mean()));
+  }
+
+  /// Keeps a feature that varies.
+  void add(Feature feature, std::size_t class_index) {
+    if (!varies(feature)) return;
     features_.push_back(std::move(feature));
     class_of_.push_back(class_index);
   }
@@ -139,29 +150,39 @@ class Builder {
 
   void add_symmetric() {
     std::vector<const Quantity*> inlets;
-    LinearForm gas;
-    for (const Quantity& q : quantities_) {
-      if (q.unit != "kg/s" || !(q.range.least > 0)) continue;
-      inlets.push_back(&q);
-      gas.inputs.insert(gas.inputs.end(), q.sum.inputs.begin(), q.sum.inputs.end());
-      gas.weights.insert(gas.weights.end(), q.sum.weights.begin(), q.sum.weights.end());
-    }
+    for (const Quantity& q : quantities_)
+      if (is_inlet(q)) inlets.push_back(&q);
     if (inlets.size() > 1) {
-      const Range range = range_of(gas);
+      const Range range = range_of(gas_);
       const Quantity* largest =
           *std::max_element(inlets.begin(), inlets.end(),
                             [](const auto* a, const auto* b) { return a->range.mean < b->range.mean; });
-      add(velocity("velocity of all gas over diameter", gas, range), 0);
+      add(velocity("velocity of all gas over diameter", gas_, range), 0);
       add(velocity("velocity of " + largest->name + " over diameter", largest->sum, largest->range), 0);
       for (const Quantity* q : inlets) {
         if (q != largest)
-          add({"share of " + q->name, {log_of(q->sum, q->range, 1), log_of(gas, range, -1)}}, 0);
+          add({"share of " + q->name, {log_of(q->sum, q->range, 1), log_of(gas_, range, -1)}}, 0);
       }
     }
     for (const Quantity& q : quantities_) {
       if (inlets.size() > 1 && std::find(inlets.begin(), inlets.end(), &q) != inlets.end()) continue;
       add(usual_or_wanted(q), 0);
     }
+  }
+
+  [[nodiscard]] std::vector<Feature> scales() const {
+    std::vector<Feature> scales;
+    const auto add_scale = [&](const std::string& name, LinearForm form) {
+      const double mean = range_of(form).mean;
+      for (double& weight : form.weights) weight /= mean;
+      form.offset /= mean;
+      Feature scale{name, {{FeatureTerm::Kind::logarithm, 1, std::move(form), {}, 1e-3}}};
+      if (varies(scale)) scales.push_back(std::move(scale));
+    };
+    if (!gas_.inputs.empty()) add_scale("all gas", gas_);
+    for (const Quantity& q : quantities_)
+      if (!is_inlet(q) && (q.unit != "1" || q.range.wide()) && q.range.least > 0) add_scale(q.name, q.sum);
+    return scales;
   }
 
   void add_imbalances(std::size_t class_index) {
@@ -183,6 +204,7 @@ class Builder {
   std::span<const std::string> wanted_;
   std::vector<std::vector<std::string>> forms_;
   std::vector<Quantity> quantities_;
+  LinearForm gas_;  // all inlets together
   std::vector<Feature> features_;
   std::vector<std::size_t> class_of_;
 };

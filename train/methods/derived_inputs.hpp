@@ -17,6 +17,9 @@ struct DerivedInputs {
   /// Names of the features that each quantity could be, which is positive and varies by more than a factor of
   /// two: itself, its logarithm, its inverse. One of them is in the map.
   std::vector<std::vector<std::string>> forms = {};
+  /// Logarithms of what a field's magnitude may follow, over their means: all gas, and every other positive
+  /// quantity that has a unit or varies by more than a factor of two.
+  std::vector<model::Feature> scales = {};
 };
 
 /// Symmetric features: where the schema has gas flows [kg/s], a temperature [K] and a diameter [m], the gas

@@ -3,9 +3,14 @@
 #include <cmath>
 #include <ranges>
 
+#include "elrom/base/text.hpp"
+#include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/pod.hpp"
 #include "elrom/math/statistics.hpp"
+#include "elrom/model/composite_models.hpp"
+#include "field_scale.hpp"
 #include "leave_one_out.hpp"
+#include "smoother_modes.hpp"
 
 namespace elrom::methods {
 
@@ -15,16 +20,23 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// Features of the cases, (rows.size(), map.size()).
+MatrixD evaluated(const model::FeatureMap& map, const field::CaseSet& cases,
+                  std::span<const std::size_t> rows) {
+  MatrixD values(static_cast<Index>(rows.size()), static_cast<Index>(map.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto row = cases.inputs.row(static_cast<Index>(rows[i]));
+    auto out = values.row(static_cast<Index>(i));
+    map.evaluate({row.data(), static_cast<std::size_t>(row.size())},
+                 {out.data(), static_cast<std::size_t>(out.size())});
+  }
+  return values;
+}
+
 KernelFeatures features_of(const field::CaseSet& cases, std::span<const std::size_t> rows,
                            const std::vector<SymmetryClass>& classes, std::span<const std::string> wanted) {
   KernelFeatures features{derive_inputs(cases, rows, classes, wanted), {}, {}};
-  MatrixD raw(static_cast<Index>(rows.size()), static_cast<Index>(features.derived.map.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto row = cases.inputs.row(static_cast<Index>(rows[i]));
-    auto out = raw.row(static_cast<Index>(i));
-    features.derived.map.evaluate({row.data(), static_cast<std::size_t>(row.size())},
-                                  {out.data(), static_cast<std::size_t>(out.size())});
-  }
+  const MatrixD raw = evaluated(features.derived.map, cases, rows);
   math::ColumnMoments moments = math::column_moments(raw);
   for (Index j = 0; j < raw.cols(); ++j) {
     if (features.derived.class_of[static_cast<std::size_t>(j)] == 0) continue;
@@ -43,6 +55,9 @@ std::vector<std::string> names_of(const model::SmootherCoefficients* smoother) {
   return names;
 }
 
+/// Exponents of the scale and the kernel's lengths are found in turns; each moves the other's optimum.
+constexpr int n_scale_passes = 3;
+
 struct Trial {
   KernelFeatures features;
   model::SmootherKernel kernel;
@@ -58,17 +73,35 @@ Trial trial(KernelFeatures of, const MatrixXd& gram, math::Covariance covariance
 }  // namespace
 
 FieldParts::FieldParts(const field::FieldData& data, std::span<const std::size_t> cases,
-                       const FitContext& context)
+                       const FitContext& context, bool scaled)
     : classes(symmetry_classes(data.cases->mirrors.size())),
       symmetric(project(data, cases, classes.front(), context.n_threads)),
-      mean(math::row_mean(symmetric, math::all_rows(cases.size()), context.n_threads)) {
+      mean(math::row_mean(symmetric, math::all_rows(cases.size()), context.n_threads)),
+      scales(VectorXd::Ones(symmetric.rows())) {
   for (Index i = 0; i < symmetric.rows(); ++i) symmetric.row(i) -= mean.transpose().cast<float>();
   const auto* smoother = context.warm == nullptr ? nullptr : context.warm->smoother();
   features = features_of(*data.cases, cases, classes, names_of(smoother));
   if (smoother != nullptr && features.same_as(smoother->features())) earlier = smoother;
-  if (nothing_to_learn() || earlier_kernel(0, 0) != nullptr) return;
-  earlier = nullptr;
-  choose(*data.cases, cases, zones_of(*data.cases, 1).front().gram(symmetric, symmetric));
+  if (nothing_to_learn()) return;
+  const MatrixXd gram = zones_of(*data.cases, 1).front().gram(symmetric, symmetric);
+  if (earlier_kernel(0, 0) == nullptr) {
+    earlier = nullptr;
+    choose(*data.cases, cases, gram);
+  }
+  if (scaled) learn_scale(*data.cases, cases, gram, context.n_threads);
+}
+
+MatrixF FieldParts::part(const field::FieldData& data, std::span<const std::size_t> cases, std::size_t c,
+                         int n_threads) const {
+  MatrixF part = project(data, cases, classes[c], n_threads);
+  if (scale) part = scales.cwiseInverse().cast<float>().asDiagonal() * part;
+  return part;
+}
+
+std::unique_ptr<model::FieldModel> FieldParts::with_scale(std::unique_ptr<model::FieldModel> model) const {
+  if (!scale) return model;
+  return std::make_unique<model::ScaledModel>(model::FeatureMap({*scale}, model->n_inputs()),
+                                              std::move(model));
 }
 
 const model::SmootherKernel* FieldParts::earlier_kernel(std::size_t c, std::size_t zone) const {
@@ -87,6 +120,51 @@ const model::SmootherKernel* FieldParts::earlier_kernel(std::size_t c, std::size
 const model::SmootherKernel& FieldParts::start(std::size_t zone) const {
   const auto* own = earlier_kernel(0, zone);
   return own != nullptr ? *own : first ? *first : *earlier_kernel(0, 0);
+}
+
+void FieldParts::learn_scale(const field::CaseSet& cases, std::span<const std::size_t> rows,
+                             const MatrixXd& gram, int n_threads) {
+  const auto& quantities = features.derived.scales;
+  if (quantities.empty()) return;
+  const Index n = symmetric.rows(), n_quantities = std::ssize(quantities);
+  const MatrixD logs =
+      evaluated(model::FeatureMap(quantities, static_cast<std::size_t>(cases.inputs.cols())), cases, rows);
+  VectorXd by_mean(n);
+  for (Index i = 0; i < n; ++i) by_mean[i] = symmetric.row(i).cast<double>().dot(mean);
+  MatrixXd whole = gram.array() + mean.squaredNorm();  // products of the cases, not of departures
+  whole.colwise() += by_mean;
+  whole.rowwise() += by_mean.transpose();
+
+  const MatrixD& z = features.z;
+  const auto residual_of = [&](const model::SmootherKernel& kernel) {
+    return residual_operation(Smoother(kernel, z).leave_one_out_about_mean());
+  };
+  model::SmootherKernel kernel = start(0);
+  const VectorXd unscaled = scaled_errors(residual_of(kernel), whole, scales);
+  VectorXd exponents = VectorXd::Zero(n_quantities), found = scales;
+  for (int pass = 0; pass < n_scale_passes; ++pass) {
+    exponents = fit_exponents(residual_of(kernel), whole, logs, exponents);
+    found = (logs * exponents).array().exp();
+    const VectorXd inverse = found.cwiseInverse();
+    kernel = fit_symmetric_kernel(z, features.of_class(0),
+                                  math::centred_products(inverse.asDiagonal() * whole * inverse.asDiagonal()),
+                                  kernel.covariance, &kernel);
+  }
+  if (significance(unscaled - scaled_errors(residual_of(kernel), whole, found)) < 1) return;
+
+  scales = std::move(found);
+  first = std::move(kernel);
+  scale.emplace();
+  for (Index j = 0; j < n_quantities; ++j) {
+    const model::Feature& quantity = quantities[static_cast<std::size_t>(j)];
+    scale->name += (j > 0 ? " " : "") + quantity.name + "^" + base::rounded(exponents[j], 2);
+    scale->terms.push_back(quantity.terms.front());
+    scale->terms.back().coefficient = exponents[j];
+  }
+  for (Index i = 0; i < n; ++i)
+    symmetric.row(i) = (symmetric.row(i) + mean.transpose().cast<float>()) / static_cast<float>(scales[i]);
+  mean = math::row_mean(symmetric, math::all_rows(rows.size()), n_threads);
+  for (Index i = 0; i < n; ++i) symmetric.row(i) -= mean.transpose().cast<float>();
 }
 
 void FieldParts::choose(const field::CaseSet& cases, std::span<const std::size_t> rows,

@@ -40,16 +40,20 @@ struct KernelFeatures {
   }
 };
 
-/// Every class of a field, with what all of them are learned from.
+/// Every class of a field over its scale, with what all of them are learned from.
 struct FieldParts {
   std::vector<SymmetryClass> classes;
-  MatrixF symmetric;     // departures of the symmetric class from its mean, (n_cases, n_cells)
-  Eigen::VectorXd mean;  // (n_cells)
+  MatrixF symmetric;                    // departures of the symmetric class from its mean, (n_cases, n_cells)
+  Eigen::VectorXd mean;                 // (n_cells)
+  Eigen::VectorXd scales;               // of the cases, (n_cases)
+  std::optional<model::Feature> scale;  // its logarithm; nothing: 0
   KernelFeatures features;
   std::optional<model::SmootherKernel> first;  // of the least leave-one-out error, all zones together
   const model::SmootherCoefficients* earlier = nullptr;  // of the same features
 
-  FieldParts(const field::FieldData& data, std::span<const std::size_t> cases, const FitContext& context);
+  /// @param scaled over a scale that the inputs give, where cases gain by it
+  FieldParts(const field::FieldData& data, std::span<const std::size_t> cases, const FitContext& context,
+             bool scaled);
 
   [[nodiscard]] bool nothing_to_learn() const {
     return symmetric.rows() < 3 || features.of_class(0).empty() || !(symmetric.squaredNorm() > 0);
@@ -58,11 +62,19 @@ struct FieldParts {
   [[nodiscard]] const model::SmootherKernel* earlier_kernel(std::size_t c, std::size_t zone) const;
   /// Where the search for a zone's kernel begins: the earlier one, else that of all zones.
   [[nodiscard]] const model::SmootherKernel& start(std::size_t zone) const;
+  /// One class of the cases, (n_cases, n_cells). @param cases those of the constructor
+  [[nodiscard]] MatrixF part(const field::FieldData& data, std::span<const std::size_t> cases, std::size_t c,
+                             int n_threads) const;
+  /// The model of the field from that of the field over its scale.
+  [[nodiscard]] std::unique_ptr<model::FieldModel> with_scale(std::unique_ptr<model::FieldModel> model) const;
 
  private:
   /// The covariance, and the form of each quantity that varies widely, of the least leave-one-out error: in
   /// some form the field is smoothest, and only the cases know in which.
   void choose(const field::CaseSet& cases, std::span<const std::size_t> rows, const Eigen::MatrixXd& gram);
+  /// @param gram of `symmetric`
+  void learn_scale(const field::CaseSet& cases, std::span<const std::size_t> rows,
+                   const Eigen::MatrixXd& gram, int n_threads);
 };
 
 }  // namespace elrom::methods

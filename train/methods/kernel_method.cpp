@@ -76,7 +76,7 @@ class KernelMethod final : public Method {
   [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
                                       const FitContext& context) const override {
     if (context.warm != nullptr) {
-      FieldParts field(data, rows_without(folds, folds.size()), context);
+      FieldParts field(data, rows_without(folds, folds.size()), context, options_.scale);
       if (field.earlier_kernel(0, 0) != nullptr && !field.nothing_to_learn())
         return cross_predict_at_once(std::move(field), data, folds, context);
     }
@@ -195,10 +195,7 @@ std::optional<AntisymmetricFit> fit_antisymmetry(const KernelFeatures& features,
     if (odd.errors.sum() < least.sum()) least = odd.errors, best = std::move(odd);
   }
   auto lasting = fit_from({.imbalances = imbalances, .lasting = true});
-  math::RunningMoments gains;
-  for (const double gain : least - lasting.errors) gains.add(gain);
-  if (gains.mean() > 2 * gains.deviation() / std::sqrt(static_cast<double>(z.rows())))
-    best = std::move(lasting);
+  if (significance(least - lasting.errors) > 2) best = std::move(lasting);
   return best;
 }
 
@@ -236,8 +233,8 @@ void KernelMethod::learn(FieldParts& field, const field::FieldData& data, std::s
   take(std::size_t{0}, std::move(symmetric));
   for (std::size_t c = 1; c < field.classes.size(); ++c) {
     if (context.stop.stop_requested()) throw Interrupted("kernel: stopped");
-    take(c, learn_antisymmetric(project(data, cases, field.classes[c], context.n_threads), c, field, zones,
-                                data, context.n_threads));
+    take(c, learn_antisymmetric(field.part(data, cases, c, context.n_threads), c, field, zones, data,
+                                context.n_threads));
   }
 }
 
@@ -291,10 +288,11 @@ AllModes together(const std::vector<ZonePart>& parts, Index n_cells) {
 std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& data,
                                                      std::span<const std::size_t> cases,
                                                      const FitContext& context) const {
-  FieldParts field(data, cases, context);
+  FieldParts field(data, cases, context, options_.scale);
   if (field.nothing_to_learn())
     return mean_model(data, field.mean, math::column_moments(data.values, cases).deviation);
 
+  if (field.scale) context.log->detail("kernel: " + data.info.name + " is learned over " + field.scale->name);
   std::vector<ZonePart> parts;
   MatrixF residuals;
   double may_drop = 0;
@@ -311,7 +309,8 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
     }
   });
   const VectorXd residual = residual_deviation(residuals, parts);
-  if (parts.empty() || parts.front().i_class > 0) return mean_model(data, field.mean, residual);
+  if (parts.empty() || parts.front().i_class > 0)
+    return field.with_scale(mean_model(data, field.mean, residual));
 
   const AllModes all = together(parts, data.values.cols());
   std::vector<std::vector<int>> signs;
@@ -322,8 +321,9 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
   for (ZonePart& part : parts) std::ranges::move(part.groups, std::back_inserter(groups));
   auto coefficients = std::make_shared<model::SmootherCoefficients>(
       field.features.derived.map, field.features.scaler, field.features.z, std::move(groups));
-  return model::make_pod_model("kernel", field.mean, all.modes, residual, mesh.n_columns,
-                               std::move(coefficients), std::move(fold), all.class_of, all.planes_of);
+  return field.with_scale(model::make_pod_model("kernel", field.mean, all.modes, residual, mesh.n_columns,
+                                                std::move(coefficients), std::move(fold), all.class_of,
+                                                all.planes_of));
 }
 
 /// Each column less its mean.
@@ -357,7 +357,7 @@ MatrixXd weights_without_own_fold(const model::SmootherKernel& kernel, const Mat
       if (!std::ranges::binary_search(own, i)) others.push_back(i);
     const MatrixD z_others = z(others, Eigen::all);
     MatrixXd products = gram(others, others);
-    if (about_mean) products = about_mean_of_rows(about_mean_of_rows(products).transpose());
+    if (about_mean) products = math::centred_products(std::move(products));
     const SmootherModes modes = modes_of(kernel, z_others, products, limits, n_threads);
     const MatrixXd found = weights_of_cases(modes, kernel, z_others, z(own, Eigen::all));
     weights(own, others) = about_mean ? about_mean_of_rows(found.transpose()).transpose() : found;
@@ -393,7 +393,8 @@ MatrixF KernelMethod::cross_predict_at_once(FieldParts field, const field::Field
   });
   MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());
   for (Index i = 0; i < n; ++i)
-    predictions.row(static_cast<Index>(cases[static_cast<std::size_t>(i)])) = found.row(i);
+    predictions.row(static_cast<Index>(cases[static_cast<std::size_t>(i)])) =
+        found.row(i) * static_cast<float>(field.scales[i]);
   return predictions;
 }
 

@@ -6,6 +6,7 @@
 #include "elrom/math/kernel.hpp"
 #include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/optimise.hpp"
+#include "elrom/math/statistics.hpp"
 
 namespace elrom::methods {
 
@@ -227,6 +228,13 @@ double leave_one_out_error(const MatrixXd& covariance, double noise, const Matri
     *slope = -(qwp + qwp.transpose()) + 2 * p * cubic.asDiagonal() * p;
   }
   return q.diagonal().dot(weight);
+}
+
+double significance(const VectorXd& gains) {
+  math::RunningMoments moments;
+  for (const double gain : gains) moments.add(gain);
+  if (moments.mean() == 0) return 0;
+  return moments.mean() / (moments.deviation() / std::sqrt(static_cast<double>(gains.size())));
 }
 
 StationaryKernel fit_stationary_kernel(const MatrixD& x, const MatrixXd& gram, math::Covariance covariance,

@@ -18,6 +18,9 @@ namespace elrom::methods {
 [[nodiscard]] double leave_one_out_error(const Eigen::MatrixXd& covariance, double noise,
                                          const Eigen::MatrixXd& gram, Eigen::MatrixXd* slope = nullptr);
 
+/// Mean of the cases' gains, in standard errors of that mean; 0: none. @param gains (n_cases)
+[[nodiscard]] double significance(const Eigen::VectorXd& gains);
+
 /// One length scale for each input, and the noise beside a signal of 1.
 struct StationaryKernel {
   Eigen::VectorXd lengths;  //!< (n_inputs)

@@ -14,6 +14,8 @@ template <class Coefficients>
 const Coefficients* part_of(const model::FieldModel* model) {
   if (const auto* modes = dynamic_cast<const model::PodModel*>(model))
     return dynamic_cast<const Coefficients*>(&modes->coefficients());
+  if (const auto* scaled = dynamic_cast<const model::ScaledModel*>(model))
+    return part_of<Coefficients>(scaled->model().get());
   const auto* blend = dynamic_cast<const model::BlendModel*>(model);
   if (blend == nullptr) return nullptr;
   for (const auto& member : blend->members())

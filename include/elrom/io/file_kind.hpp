@@ -25,7 +25,7 @@ namespace kinds {
 inline constexpr FileKind mesh{"elrom-mesh", {1, 0}, "make it again with elrom-data mesh"};
 inline constexpr FileKind snapshots{
     "elrom-snapshots", {1, 1}, "import the cases again with elrom-data import"};
-inline constexpr FileKind bundle{"elrom-bundle", {1, 4}, "train again with elrom-train run"};
+inline constexpr FileKind bundle{"elrom-bundle", {1, 5}, "train again with elrom-train run"};
 inline constexpr FileKind prediction{"elrom-prediction", {1, 1}, "predict again with elrom-predict"};
 inline constexpr FileKind manifest{"elrom-manifest", {1, 0}, "fetch the shipped cases again"};
 inline constexpr FileKind check{"elrom-check", {1, 1}, "check again with elrom-data check"};

@@ -17,6 +17,10 @@ struct SymmetricEigen {
 /// @param matrix A (n, n); its lower triangle is read
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 
+/// Products of rows less their mean, from the products of the rows: C G C with C = I - 1 1^T / n.
+/// @param gram G (n, n)
+[[nodiscard]] Eigen::MatrixXd centred_products(Eigen::MatrixXd gram);
+
 /// Of all X that make |A X - B| least the smallest, by the pseudo-inverse (section 5.5.2): A may be singular
 /// and indefinite.
 /// @param matrix A (n, n); its lower triangle is read @param right B (n, m)

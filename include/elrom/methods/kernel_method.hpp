@@ -5,6 +5,11 @@
 // smoothers). So do the covariance (Matern 5/2 or Gaussian) and the form in which an input enters that varies
 // by more than a factor of two (itself, logarithm, inverse).
 //
+// Much of what differs from case to case is how large the field is: gas velocities grow as the gas flow,
+// the pressure as the inventory, the diameter as the solids' own. So a field is learned over a scale, a
+// product of powers of such quantities; the exponents are those of the least leave-one-out error, taken
+// where cases gain by it more than a standard error.
+//
 // One noise for all that a field does smooths its leading modes too much, and the rest too little: the
 // leading modes of what the smoother says have lengths and noise of their own, by likelihood near those of
 // the field.
@@ -32,7 +37,8 @@ struct KernelOptions {
   std::size_t most_modes = 80;  ///< for the symmetric part; an antisymmetric part has at most a quarter of it
   std::size_t own_modes = 4;    ///< leading modes of a zone with lengths and noise of their own
   std::size_t zones = 3;        ///< of height, each with a smoother of its own; they fade into each other
-  int passes = 2;  ///< searches; from the second on, errors are weighted by what the first one trusts
+  int passes = 2;     ///< searches; from the second on, errors are weighted by what the first one trusts
+  bool scale = true;  ///< learn the field over a scale that the inputs give
   bool antisymmetric = true;  ///< learn the antisymmetric parts too, instead of predicting none
   bool shrink = true;         ///< spectral and cell-wise shrinkage
 };

@@ -1,11 +1,12 @@
 #pragma once
-// Field models made of field models: a weighted sum, and the average over mirror images.
+// Field models made of field models: a weighted sum, a multiple, and the average over mirror images.
 
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "elrom/field/symmetry.hpp"
+#include "elrom/model/feature_map.hpp"
 #include "elrom/model/field_model.hpp"
 
 namespace elrom::model {
@@ -37,6 +38,35 @@ class BlendModel final : public FieldModel {
 
  private:
   std::vector<Member> parts_;
+};
+
+/// What a model answers, values and spread, times exp(logarithm of the inputs): a field over a scale that the
+/// inputs give, such as a pressure over the weight of the solids. Thread rule: as above.
+class ScaledModel final : public FieldModel {
+ public:
+  /// @param logarithm of the scale, one feature. @throws InputError for more, or for other inputs
+  ScaledModel(FeatureMap logarithm, std::shared_ptr<const FieldModel> model,
+              const std::string& where = "memory");
+
+  /// That of the model: people ask how the answer was found.
+  [[nodiscard]] std::string kind() const override { return model_->kind(); }
+  [[nodiscard]] std::size_t n_inputs() const override { return model_->n_inputs(); }
+  [[nodiscard]] std::size_t n_planes() const override { return model_->n_planes(); }
+  [[nodiscard]] std::size_t n_columns() const override { return model_->n_columns(); }
+  void predict(const Query& query, std::span<float> values, std::span<float> spread,
+               Workspace& workspace) const override;
+  [[nodiscard]] std::unique_ptr<FieldModel> without_case(std::size_t i_case) const override;
+  void save(io::TensorFile& file, const std::string& prefix) const override;
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
+                                                        const Wanted& wanted);
+  [[nodiscard]] const std::shared_ptr<const FieldModel>& model() const { return model_; }
+  [[nodiscard]] const FeatureMap& logarithm() const { return logarithm_; }
+  /// @param inputs SI, (n_inputs)
+  [[nodiscard]] float scale(std::span<const double> inputs) const;
+
+ private:
+  FeatureMap logarithm_;
+  std::shared_ptr<const FieldModel> model_;
 };
 
 /// The model as it would be with one case more (PodModel::with_case); of a blend, the parts
