@@ -74,6 +74,15 @@ std::unique_ptr<FieldModel> BlendModel::without_case(std::size_t i_case) const {
   return any ? std::make_unique<BlendModel>(std::move(parts)) : nullptr;
 }
 
+std::string scale_of(const FieldModel& model) {
+  if (const auto* scaled = dynamic_cast<const ScaledModel*>(&model))
+    return scaled->logarithm().features().front().name;
+  if (const auto* blend = dynamic_cast<const BlendModel*>(&model))
+    for (const auto& part : blend->members())
+      if (auto found = scale_of(*part.model); !found.empty()) return found;
+  return "";
+}
+
 std::unique_ptr<FieldModel> with_case(const FieldModel& model, std::span<const double> inputs,
                                       std::span<const float> values) {
   if (const auto* modes = dynamic_cast<const PodModel*>(&model)) return modes->with_case(inputs, values);

@@ -308,6 +308,9 @@ TEST(ScaledModel, IsTheModelTimesTheScaleOfTheInputs) {
     EXPECT_NEAR(scaled.spread[i], scale * own.spread[i], 1e-5);
   }
   EXPECT_EQ(make("scaled")->kind(), "pod_gp");
+  EXPECT_EQ(scale_of(*make("scaled")), "scale");
+  EXPECT_EQ(scale_of(BlendModel({{{0.5}, make("linear")}, {{0.5}, make("scaled")}})), "scale");
+  EXPECT_EQ(scale_of(*make("blend")), "");
 }
 
 TEST(ScaledModel, RefusesAScaleThatIsNotOneFeatureOfTheSameInputs) {

@@ -204,11 +204,13 @@ TEST_F(Accuracy, ChoiceIsToldAsTheBundleHasIt) {
   const auto root = nlohmann::json::parse(to_json(*report_))["fields"][0]["choice"];
   EXPECT_EQ(root["nrmse"], 0.4);
   EXPECT_EQ(root["nrmse_by_band"], 0.39);
+  EXPECT_EQ(root["scale"], "primary_air^0");
   EXPECT_EQ(root["candidates"][1]["weight"], 0.75);
   EXPECT_TRUE(root["candidates"][2]["nrmse"].is_null());
   const auto page = html_page(*report_);
   const auto section = page.substr(page.find("id=\"choice\""));
   EXPECT_THAT(section, HasSubstr("<td class=\"mark best\">0.450</td><td class=\"mark\">-</td>"));
+  EXPECT_THAT(section, HasSubstr("<td>0.390</td><td>primary_air^0</td>"));
 }
 
 TEST_F(Accuracy, CsvHasOneLineAFieldMethodAndCase) {

@@ -82,6 +82,7 @@ Json field_node(const AccuracyReport& report, const FieldAccuracy& field) {
         {{"method", candidate.name}, {"nrmse", number(candidate.nrmse)}, {"weight", candidate.weight}});
   node["choice"] = {{"nrmse", number(field.choice.nrmse)},
                     {"nrmse_by_band", number(field.choice.nrmse_by_band)},
+                    {"scale", field.choice.scale.empty() ? Json() : Json(field.choice.scale)},
                     {"candidates", std::move(candidates)}};
   node["error_budget"] = {{"noise", !field.noise.empty() ? number(field.budget.noise) : Json()},
                           {"compression", number(field.budget.compression)},

@@ -11,6 +11,7 @@
 #include "elrom/base/text.hpp"
 #include "elrom/math/statistics.hpp"
 #include "elrom/model/banded_networks.hpp"
+#include "elrom/model/composite_models.hpp"
 #include "names.hpp"
 
 namespace elrom::report {
@@ -150,8 +151,8 @@ Choice choice_of(const std::string& accuracy_json, const std::string& field) {
   };
   const auto root = nlohmann::json::parse(accuracy_json, nullptr, false);
   if (!root.is_object() || !root.contains(field) || !root[field].contains("candidates"))
-    return {{}, std::nan(""), std::nan("")};
-  Choice choice{{}, number(root[field], "nrmse"), number(root[field], "nrmse_by_band")};
+    return {{}, std::nan(""), std::nan(""), {}};
+  Choice choice{{}, number(root[field], "nrmse"), number(root[field], "nrmse_by_band"), {}};
   for (const auto& candidate : root[field]["candidates"])
     choice.candidates.push_back(
         {candidate.value("name", ""), number(candidate, "nrmse"), candidate.value("weight", 0.0)});
@@ -219,7 +220,10 @@ FieldAccuracy evaluate_field(const FieldTask& task, Figures* figures) {
     result.methods.back().kind = model->kind();
     const auto choice = choice_of(model::BundleReader(bundle.path).info().accuracy_json, task.info.name);
     result.methods.back().detail = blend_text(choice);
-    if (result.methods.size() == 1) result.choice = choice;
+    if (result.methods.size() == 1) {
+      result.choice = choice;
+      result.choice.scale = model::scale_of(*model);
+    }
     const auto* networks = dynamic_cast<const model::BandedNetworks*>(model.get());
     if (networks != nullptr && result.submodels.empty())
       result.submodels = score_submodels(*networks, truth, predictions.back(), statistics);

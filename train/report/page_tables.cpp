@@ -230,22 +230,24 @@ std::string choice_section(const AccuracyReport& report) {
   std::string head = "<th>field</th>", body;
   for (const auto& candidate : first->choice.candidates)
     head += fmt::format("<th>{}</th>", escape(method_label(candidate.name)));
-  head += "<th>chosen</th><th>band by band</th>";
+  head += "<th>chosen</th><th>band by band</th><th>learned over</th>";
   for (const auto& field : report.fields) {
     if (!chose(field)) continue;
     std::string cells;
     for (const auto& candidate : field.choice.candidates)
       cells += fmt::format("<td class=\"mark{}\">{}</td>", candidate.weight > 0 ? " best" : "",
                            score_text(candidate.nrmse));
-    body += fmt::format("<tr><th>{}</th>{}<td class=\"mark own\">{}</td><td>{}</td></tr>",
+    const auto& scale = field.choice.scale;
+    body += fmt::format("<tr><th>{}</th>{}<td class=\"mark own\">{}</td><td>{}</td><td>{}</td></tr>",
                         escape(field_label(field.info.name)), cells, score_text(field.choice.nrmse),
-                        score_text(field.choice.nrmse_by_band));
+                        score_text(field.choice.nrmse_by_band), scale.empty() ? "-" : escape(scale));
   }
   const auto lead = fmt::format(
       "NRMSE on training cases that the fit left out, in groups of neighbouring cases; held-out cases were "
       "not looked at. The dot marks what answers. A blend is taken as far as it gains, wholly where it is "
-      "{0:g} % better than its best member, and weights of each band of columns' own (last column) in the same "
-      "way (-: all columns lie in one band).",
+      "{0:g} % better than its best member, and weights of each band of columns' own in the same way (-: all "
+      "columns lie in one band). The last column says what the field's magnitude was found to grow as (-: "
+      "nothing).",
       100 * methods::AutoOptions{}.full_gain);
   return section("choice", "What the choice went by", lead,
                  "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + body +

@@ -69,6 +69,10 @@ class ScaledModel final : public FieldModel {
   std::shared_ptr<const FieldModel> model_;
 };
 
+/// Name of the scale that the field, or the first part of a blend that has one, is learned over: "all
+/// gas^0.94 solids_d50^-0.23"; empty: none.
+[[nodiscard]] std::string scale_of(const FieldModel& model);
+
 /// The model as it would be with one case more (PodModel::with_case); of a blend, the parts
 /// that have a closed form. nullptr: nothing of it has.
 [[nodiscard]] std::unique_ptr<FieldModel> with_case(const FieldModel& model, std::span<const double> inputs,

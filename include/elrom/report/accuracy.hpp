@@ -82,6 +82,7 @@ struct Choice {
   std::vector<Candidate> candidates;  ///< empty: not known
   double nrmse = 0;                   ///< of what was chosen; NaN: not known
   double nrmse_by_band = 0;           ///< had each band of columns weights of its own; NaN: not known
+  std::string scale;                  ///< that the field is learned over, as model::scale_of(); empty: none
 };
 
 struct FieldAccuracy {
