@@ -510,14 +510,30 @@ TEST(KernelMethod, AFieldIsLearnedOverWhatItsMagnitudeFollows) {
             0.98 * test::unseen_error(*make_kernel_method(unscaled), data));
 }
 
-TEST(KernelMethod, AFieldWhoseMagnitudeFollowsNothingHasNoScale) {
-  const field::CaseSet cases = test::toy_cases(30);
+/// A field whose magnitude follows nothing that the inputs say.
+field::FieldData field_by_chance(const field::CaseSet& cases) {
   field::FieldData data = field_by_diameter(cases);
   base::Random random(base::Seed(32));
   for (Eigen::Index i = 0; i < data.values.rows(); ++i)
     data.values.row(i).array() = static_cast<float>(random.normal());
+  return data;
+}
+
+TEST(KernelMethod, AFieldWhoseMagnitudeFollowsNothingHasNoScale) {
+  const field::CaseSet cases = test::toy_cases(30);
+  const field::FieldData data = field_by_chance(cases);
 
   const auto model = make_kernel_method()->fit(data, math::all_rows(30), {});
+
+  EXPECT_EQ(dynamic_cast<const model::ScaledModel*>(model.get()), nullptr);
+}
+
+TEST(KernelMethod, AnEarlierModelsScaleIsNotKeptWhereNothingFollowsIt) {
+  const field::CaseSet cases = test::toy_cases(30);
+  const auto warm = known_of(field_by_diameter(cases), 30);
+  ASSERT_NE(dynamic_cast<const model::ScaledModel*>(warm.model.get()), nullptr);
+
+  const auto model = make_kernel_method()->fit(field_by_chance(cases), math::all_rows(30), {.warm = &warm});
 
   EXPECT_EQ(dynamic_cast<const model::ScaledModel*>(model.get()), nullptr);
 }

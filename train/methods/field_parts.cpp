@@ -140,6 +140,8 @@ void FieldParts::learn_scale(const field::CaseSet& cases, std::span<const std::s
     return residual_operation(Smoother(kernel, z).leave_one_out_about_mean());
   };
   model::SmootherKernel kernel = start(0);
+  if (earlier != nullptr)  // its kernel is of a field over the scale that was right then
+    kernel = fit_symmetric_kernel(z, features.of_class(0), gram, kernel.covariance, &kernel);
   const VectorXd unscaled = scaled_errors(residual_of(kernel), whole, scales);
   VectorXd exponents = VectorXd::Zero(n_quantities), found = scales;
   for (int pass = 0; pass < n_scale_passes; ++pass) {
