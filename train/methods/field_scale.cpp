@@ -1,5 +1,6 @@
 #include "field_scale.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,10 +13,20 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double steepest = 3;  // largest exponent
-/// Weight of an exponent's square beside the logarithm of the error, times the number of cases: 1 would be
-/// that of a normal prior of deviation 1, if the cases' errors were independent.
-constexpr double caution = 0.1;
+constexpr double steepest = 3;           // largest exponent
+constexpr double prior_deviation = 0.6;  // of an exponent about 0
+constexpr double least_variance = 0.1;   // few errors may be alike by chance
+
+/// Weight of the exponents' squares beside the logarithm of the cases' summed error. Errors with a relative
+/// variance v scatter as the mean squares of 2 / v normal values do (Satterthwaite 1946), so those of n cases
+/// weigh n / v times their logarithm.
+/// @param errors of the cases over their scales, (n_cases)
+double prior_weight(const VectorXd& errors) {
+  const auto n = static_cast<double>(errors.size());
+  const double mean = errors.mean() + std::numeric_limits<double>::min();
+  const double variance = std::max((errors / mean).squaredNorm() / n - 1, least_variance);
+  return variance / (2 * n * prior_deviation * prior_deviation);
+}
 
 }  // namespace
 
@@ -35,7 +46,9 @@ VectorXd scaled_errors(const MatrixXd& residual, const MatrixXd& gram, const Vec
 
 VectorXd fit_exponents(const MatrixXd& residual, const MatrixXd& gram, const MatrixD& logs,
                        const VectorXd& start) {
-  const double weight = caution / static_cast<double>(logs.rows());
+  const VectorXd squares_at_start = (2 * logs * start).array().exp();
+  const double weight = prior_weight(
+      scaled_errors(residual, gram, squares_at_start.cwiseSqrt()).cwiseQuotient(squares_at_start));
   const auto objective = [&](const VectorXd& exponents, VectorXd& gradient) {
     const VectorXd scales = (logs * exponents).array().exp();
     const MatrixXd b = residual * scales.cwiseInverse().asDiagonal();
