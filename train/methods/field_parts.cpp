@@ -1,9 +1,10 @@
 #include "field_parts.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <ranges>
 
-#include "elrom/base/text.hpp"
 #include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/pod.hpp"
 #include "elrom/math/statistics.hpp"
@@ -154,15 +155,19 @@ void FieldParts::learn_scale(const field::CaseSet& cases, std::span<const std::s
   }
   if (significance(unscaled - scaled_errors(residual_of(kernel), whole, found)) < 1) return;
 
-  scales = std::move(found);
-  first = std::move(kernel);
-  scale.emplace();
+  model::Feature power;
   for (Index j = 0; j < n_quantities; ++j) {
     const model::Feature& quantity = quantities[static_cast<std::size_t>(j)];
-    scale->name += (j > 0 ? " " : "") + quantity.name + "^" + base::rounded(exponents[j], 2);
-    scale->terms.push_back(quantity.terms.front());
-    scale->terms.back().coefficient = exponents[j];
+    if (const auto shown = fmt::format("{:.2f}", exponents[j]); shown != "0.00" && shown != "-0.00")
+      power.name += (power.name.empty() ? "" : " ") + quantity.name + "^" + shown;
+    power.terms.push_back(quantity.terms.front());
+    power.terms.back().coefficient = exponents[j];
   }
+  if (power.name.empty()) return;  // next to no scale
+
+  scale = std::move(power);
+  scales = std::move(found);
+  first = std::move(kernel);
   for (Index i = 0; i < n; ++i)
     symmetric.row(i) = (symmetric.row(i) + mean.transpose().cast<float>()) / static_cast<float>(scales[i]);
   mean = math::row_mean(symmetric, math::all_rows(rows.size()), n_threads);
