@@ -11,7 +11,9 @@ namespace elrom::ingest {
 namespace {
 
 constexpr std::size_t fewest_cases = 10;
-constexpr double twin_distance = 0.02;  // of the typical distance between cases
+// Of twins, in typical distances between cases ...
+constexpr double nearest_twins = 0.001, farthest_twins = 0.02;
+constexpr double twin_share = 0.01;     // ... and of a case's usual distance to its nearest
 constexpr double infinitely_far = 1e6;  // where all other cases are equal
 constexpr std::size_t most_pairs = 3000;
 
@@ -53,6 +55,15 @@ MatrixD relative_distances(std::span<const CaseSummary> cases) {
     ++n_used;
   }
   return total / std::max(1, n_used);
+}
+
+/// The most that twins can be apart. Cases of a few inputs lie the nearer to each other the more they are,
+/// with no mistake in it; a copy lies nearer than that by far.
+double twin_distance(const MatrixD& squared) {
+  MatrixD others = squared;
+  others.diagonal().setConstant(infinitely_far);
+  const Eigen::VectorXd nearest = others.rowwise().minCoeff().cwiseSqrt();
+  return std::clamp(twin_share * median(list_of(nearest)), nearest_twins, farthest_twins);
 }
 
 /// Leading directions of rows that were moved to the median and drawn onto the unit sphere, (n_boxes,
@@ -119,13 +130,14 @@ std::vector<Twin> find_twins(std::span<const CaseSummary> cases) {
   std::vector<Twin> twins;
   if (cases.size() < 2) return twins;
   const auto distances = relative_distances(cases);
+  const double near = twin_distance(distances);
   for (std::size_t j = 1; j < cases.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
       const bool exact = cases[i].digest == cases[j].digest;
       const double distance =
           std::sqrt(distances(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
       // Two cases alone have no typical distance but their own.
-      if (exact || (cases.size() > 2 && distance < twin_distance)) twins.push_back({i, j, exact, distance});
+      if (exact || (cases.size() > 2 && distance < near)) twins.push_back({i, j, exact, distance});
     }
   }
   return twins;

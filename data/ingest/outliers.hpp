@@ -15,8 +15,9 @@ struct Twin {
   double distance = 0;  ///< of the sketches, relative to the typical distance between cases
 };
 
-/// Pairs whose fields are the same, exactly or to within a small part of the typical distance between cases.
-/// Repeated runs of one case (same inputs, another random start) lie much farther apart and are no twins.
+/// Pairs whose fields are the same, exactly or to within a small part of a case's usual distance to its
+/// nearest. Repeated runs of one case (same inputs, another random start) lie much farther apart and are no
+/// twins.
 [[nodiscard]] std::vector<Twin> find_twins(std::span<const CaseSummary> cases);
 
 struct Outlier {

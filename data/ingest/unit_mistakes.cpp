@@ -1,6 +1,7 @@
 #include "unit_mistakes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -23,7 +24,10 @@ constexpr double healthy_residual = 1.7;     // ... and nearly all within this
 constexpr double wild_residual = 8.0;        // of a measure of the fields: told even when no unit explains it
 constexpr double least_scatter = 0.02;       // 2 %, where cases agree almost exactly
 constexpr double least_gain = 3.0;           // by which a correction must lower the sum of squares
-constexpr double most_square = 30.0;         // a feature far out counts no more than this
+// Where an even spread ends, in distances of its 90th percentile from its middle: 1.25, and more where few
+// cases tell that percentile.
+constexpr double even_end = 1.75;
+constexpr double most_square = 30.0;  // a feature far out counts no more than this
 
 // --- corrections
 
@@ -77,6 +81,25 @@ std::vector<std::string> fields_like(std::span<const std::string> fields, std::s
 
 // --- comparison
 
+/// How far below the usual a value may lie without a mistake, as a logarithm; 0: its scatter tells. A
+/// quantity that is spread evenly down to near zero, as a designed input can be, has no lower end in
+/// logarithms. So where ratios to the usual are less skewed than their logarithms, the end is that of an even
+/// spread.
+double lower_end(const std::vector<double>& residuals) {
+  const std::array shares{0.1, 0.5, 0.9};
+  std::array<double, 3> logs{}, ratios{};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    logs[i] = quantile(residuals, shares[i]);
+    ratios[i] = std::exp(logs[i]);
+  }
+  const auto skewness = [](const std::array<double, 3>& q) {
+    return std::abs(q[2] + q[0] - 2 * q[1]) / std::max(q[2] - q[0], 1e-12);
+  };
+  if (skewness(logs) <= skewness(ratios)) return 0;
+  const double end = ratios[1] - even_end * (ratios[2] - ratios[1]);
+  return end > 0 ? std::log(end) : -std::numeric_limits<double>::infinity();
+}
+
 /// The usual dependence of every feature on the load, learned from all cases.
 class Usual {
  public:
@@ -87,8 +110,14 @@ class Usual {
     for (std::size_t k = 0; k < features.infos().size(); ++k) {
       std::vector<double> column;
       for (const auto& row : rows_) column.push_back(row[k]);
-      lines_.push_back(robust_line(loads, column, fewest_cases));
-      lines_.back().scatter = std::max(lines_.back().scatter, least_scatter);
+      auto line = robust_line(loads, column, fewest_cases);
+      line.scatter = std::max(line.scatter, least_scatter);
+      if (has_any_sign(k, cases)) line.known = false;
+      std::vector<double> rest;
+      for (std::size_t i = 0; i < column.size(); ++i)
+        if (std::isfinite(column[i])) rest.push_back(column[i] - line.at(loads[i]));
+      lower_ends_.push_back(line.known ? lower_end(rest) : 0);
+      lines_.push_back(line);
     }
   }
 
@@ -99,12 +128,25 @@ class Usual {
     std::vector<double> result(row.size(), 0.0);
     for (std::size_t k = 0; k < row.size(); ++k) {
       const auto& line = lines_[k];
-      if (line.known && std::isfinite(row[k])) result[k] = (row[k] - line.at(load)) / line.scatter;
+      if (!line.known || !std::isfinite(row[k])) continue;
+      const double rest = row[k] - line.at(load);
+      result[k] = rest / line.scatter;
+      if (rest > lower_ends_[k]) result[k] = std::max(result[k], -1.0);
     }
     return result;
   }
 
  private:
+  /// A measure that can be negative is near zero in some cases, and its logarithm then anything. One negative
+  /// case may be a mistake of its own.
+  static bool has_any_sign(std::size_t feature, std::span<const CaseSummary> cases) {
+    const auto n_inputs = cases[0].schema.size();
+    if (feature < n_inputs || feature >= n_inputs + n_measures) return false;
+    const auto n_negative = std::ranges::count_if(
+        cases, [&](const CaseSummary& one) { return one.measures[feature - n_inputs] < 0; });
+    return n_negative > 1;
+  }
+
   static std::vector<std::vector<double>> evaluate_all(const CaseFeatures& features,
                                                        std::span<const CaseSummary> cases) {
     std::vector<std::vector<double>> rows;
@@ -116,6 +158,7 @@ class Usual {
   std::vector<std::vector<double>> rows_;
   LoadProxy load_;
   std::vector<RobustLine> lines_;
+  std::vector<double> lower_ends_;  // logarithms; 0: the scatter alone judges
 };
 
 double sum_of_squares(const std::vector<double>& residuals) {

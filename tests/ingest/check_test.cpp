@@ -158,6 +158,71 @@ TEST(Check, ASingleCaseIsJudgedByPhysics) {
   EXPECT_THAT(check({one}), Contains(Field(&Finding::quantity, HasSubstr("solids' size"))));
 }
 
+/// Cases of one input without a unit, with what `input` makes of even shares of (0, 1).
+template <class Input>
+std::vector<CaseSummary> designed(std::size_t n, Input input) {
+  std::vector<CaseSummary> cases(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    cases[i].schema = field::InputSchema({{"skew", "1", "1"}});
+    cases[i].inputs = {input((static_cast<double>(i) + 0.3) / static_cast<double>(n))};
+    cases[i].measures.fill(std::numeric_limits<double>::quiet_NaN());
+  }
+  return cases;
+}
+
+TEST(UnitMistakes, AnInputSpreadEvenlyFromZeroHasNone) {
+  for (const std::size_t n : {20u, 80u, 200u}) {
+    const auto even = designed(n, [](double share) { return 1.2 * share; });
+
+    EXPECT_THAT(find_unit_mistakes(even), IsEmpty()) << n;
+  }
+}
+
+TEST(UnitMistakes, AreToldWhereAnInputHasALowerEnd) {
+  auto even = designed(80, [](double share) { return 0.4 + share; });
+  auto decade = designed(80, [](double share) { return std::pow(10, share); });
+  for (auto* cases : {&even, &decade}) {
+    (*cases)[40].inputs[0] *= 0.01;
+
+    const auto mistakes = find_unit_mistakes(*cases);
+
+    ASSERT_EQ(mistakes.size(), 1);
+    EXPECT_EQ(mistakes[0].i_case, 40);
+    EXPECT_TRUE(mistakes[0].certain_cause);
+  }
+}
+
+TEST(UnitMistakes, AMeasureOfAnySignHasNone) {
+  auto cases = designed(60, [](double) { return 1.0; });
+  const auto drop = static_cast<std::size_t>(Measure::pressure_drop);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    cases[i].fields = {"pressure"};
+    cases[i].measures[drop] = std::exp(static_cast<double>(i) / 15) - 1.2;  // three below 0, then 0.02 Pa
+  }
+  EXPECT_THAT(find_unit_mistakes(cases), IsEmpty());
+
+  for (auto& one : cases) one.measures[drop] += 1.2;
+  cases[3].measures[drop] /= 100;
+  EXPECT_EQ(find_unit_mistakes(cases).size(), 1);
+}
+
+TEST(Twins, AreNearerThanManyCasesOfOneInputAre) {
+  auto cases = designed(300, [](double share) { return share; });
+  for (auto& one : cases) {
+    one.sketch = MatrixF::Constant(1, 2, static_cast<float>(one.inputs[0]));
+    one.digest = std::to_string(one.inputs[0]);
+  }
+  EXPECT_THAT(find_twins(cases), IsEmpty());
+
+  cases.push_back(cases[7]);
+  cases.back().sketch *= 1.005F;  // 0.04 % of the usual distance away
+  cases.back().digest = "rounded";
+  const auto twins = find_twins(cases);
+  ASSERT_EQ(twins.size(), 1);
+  EXPECT_EQ(twins[0].first, 7);
+  EXPECT_FALSE(twins[0].exact);
+}
+
 TEST(Check, DuplicatesAndNearDuplicatesAreTold) {
   auto cases = shipped();
   cases.push_back(cases[5]);
