@@ -1,6 +1,7 @@
 #include "elrom/base/app.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <atomic>
 #include <csignal>
@@ -54,6 +55,14 @@ int run_app(std::string_view program, const std::function<int()>& body) noexcept
   } catch (...) {
     return report(program, "unknown failure", ExitStatus::internal);
   }
+}
+
+void keep_freed_memory() noexcept {
+#ifdef __GLIBC__
+  constexpr int more_than_a_matrix = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, more_than_a_matrix);
+  mallopt(M_TRIM_THRESHOLD, more_than_a_matrix);
+#endif
 }
 
 std::stop_token interrupt_token() {

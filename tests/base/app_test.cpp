@@ -1,9 +1,12 @@
 #include "elrom/base/app.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
+#include <vector>
 
 #include "elrom/base/error.hpp"
 
@@ -45,6 +48,28 @@ TEST(RunApp, TreatsForeignExceptionsAsInternal) {
 
   EXPECT_NE(testing::internal::GetCapturedStderr().find("out of memory"), std::string::npos);
 }
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+/// Pages that the system clears for 40 MB, more than glibc keeps by itself.
+long cleared_pages() {
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  const std::vector<char> memory(40'000'000, 'a');
+  getrusage(RUSAGE_SELF, &after);
+  return after.ru_minflt - before.ru_minflt;
+}
+
+TEST(KeepFreedMemory, IsNotClearedAgain) {
+  const auto in_a_child = [] {
+    keep_freed_memory();
+    const long first = cleared_pages(), second = cleared_pages();
+    std::exit(10 * second < first ? 0 : 1);
+  };
+  EXPECT_EXIT(in_a_child(), testing::ExitedWithCode(0), "");
+}
+
+#endif
 
 }  // namespace
 }  // namespace elrom::base

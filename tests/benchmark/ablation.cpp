@@ -328,6 +328,7 @@ class Workbench {
 
 int main(int argc, char** argv) {
   return base::run_app("bench-ablation", [&] {
+    base::keep_freed_memory();  // as elrom-train does
     Options options;
     benchmark::CommandLine line(
         "Error and training time of the networks' options on real cases, one switched at a time");

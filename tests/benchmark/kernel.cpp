@@ -204,6 +204,7 @@ class Workbench {
 
 int main(int argc, char** argv) {
   return base::run_app("bench-kernel", [&] {
+    base::keep_freed_memory();  // as elrom-train does
     Options options;
     benchmark::CommandLine line("What each part of the kernel method buys, judged by training cases alone.");
     options.add_to(line, "snapshot store", benchmark::CommandLine::Need::required);

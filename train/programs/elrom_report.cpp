@@ -289,6 +289,7 @@ void add_scenes(cli::App& app, Arguments& arguments) {
 }
 
 int run(int argc, char** argv) {
+  base::keep_freed_memory();
   cli::App app(R"(Reports on trained ELROM studies, collision models and simulated scenes.
 Exit status: 2 usage, 3 input, 5 numerical, 7 B is worse than A (compare), 130 interrupted.)",
                "elrom-report");

@@ -6,6 +6,7 @@
 
 int main(int argc, char** argv) {
   return elrom::base::run_app("elrom-train", [&] {
+    elrom::base::keep_freed_memory();
     elrom::cli::App app("Trains reduced-order models of a furnace from a snapshot store.", "elrom-train");
     app.set_version_flag("--version", elrom::program_version());
     app.require_subcommand(1);
