@@ -100,6 +100,21 @@ TEST(Cholesky, SolvesAndInverts) {
   EXPECT_TRUE((factor.inverse_factor() * k * factor.inverse_factor().transpose()).isIdentity(1e-9));
 }
 
+TEST(Cholesky, InvertsAnySize) {
+  // One block, halves of unequal size, halves of halves.
+  for (const Eigen::Index n : {1, 7, 24, 25, 40, 63, 113}) {
+    const MatrixXd k = random_positive(n), identity = MatrixXd::Identity(n, n);
+    const Cholesky factor(lower_only(k));
+
+    EXPECT_TRUE(factor.inverse().isApprox(factor.solve(identity), 1e-11)) << n;
+    EXPECT_EQ(factor.inverse(), factor.inverse().transpose()) << n;
+    EXPECT_TRUE((factor.inverse_factor().transpose() * factor.inverse_factor())
+                    .isApprox(factor.solve(identity), 1e-11))
+        << n;
+    EXPECT_TRUE(factor.inverse_factor().isLowerTriangular(0)) << n;
+  }
+}
+
 TEST(Cholesky, RefusesWhatIsNotPositiveDefinite) {
   EXPECT_FALSE(Cholesky((MatrixXd(2, 2) << 1, 2, 2, 1).finished()).succeeded());
 }

@@ -46,9 +46,9 @@ VectorXd scaled_errors(const MatrixXd& residual, const MatrixXd& gram, const Vec
 
 VectorXd fit_exponents(const MatrixXd& residual, const MatrixXd& gram, const MatrixD& logs,
                        const VectorXd& start) {
-  const VectorXd squares_at_start = (2 * logs * start).array().exp();
-  const double weight = prior_weight(
-      scaled_errors(residual, gram, squares_at_start.cwiseSqrt()).cwiseQuotient(squares_at_start));
+  const VectorXd at_start = (logs * start).array().exp();
+  const double weight =
+      prior_weight(scaled_errors(residual, gram, at_start).cwiseQuotient(at_start.cwiseAbs2()));
   const auto objective = [&](const VectorXd& exponents, VectorXd& gradient) {
     const VectorXd scales = (logs * exponents).array().exp();
     const MatrixXd b = residual * scales.cwiseInverse().asDiagonal();

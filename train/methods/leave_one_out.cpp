@@ -222,10 +222,11 @@ double leave_one_out_error(const MatrixXd& covariance, double noise, const Matri
   const MatrixXd q = p * gram * p;
   const VectorXd weight = p.diagonal().array().square().inverse();
   if (slope != nullptr) {
-    // From dP = -P dK P: dJ/dK = -(Q W P + (Q W P)^T) + 2 P diag(Q_ii / P_ii^3) P.
-    const MatrixXd qwp = q * weight.asDiagonal() * p;
+    // From dP = -P dK P: dJ/dK = M P + (M P)^T with M = P diag(Q_ii / P_ii^3) - Q W, W = diag(1 / P_ii^2).
     const VectorXd cubic = q.diagonal().array() * weight.array() / p.diagonal().array();
-    *slope = -(qwp + qwp.transpose()) + 2 * p * cubic.asDiagonal() * p;
+    const MatrixXd m = p * cubic.asDiagonal() - q * weight.asDiagonal();
+    const MatrixXd mp = m * p;
+    *slope = mp + mp.transpose();
   }
   return q.diagonal().dot(weight);
 }
