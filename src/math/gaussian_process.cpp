@@ -19,20 +19,6 @@ MatrixD divided(const MatrixD& inputs, const VectorXd& lengths) {
   return inputs.array().rowwise() / lengths.transpose().array();
 }
 
-/// The covariance matrix without noise, and what its derivatives need.
-struct Covariances {
-  MatrixXd k;      // k(r), unit signal
-  MatrixXd slope;  // (dk/dr) / r
-};
-
-Covariances covariances(Covariance kind, const MatrixD& scaled, bool with_slope) {
-  Covariances c{squared_distances(scaled, scaled).cwiseSqrt(), {}};
-  c.k.diagonal().setZero();
-  if (with_slope) c.slope = c.k.unaryExpr([&](double r) { return covariance_slope(kind, r); });
-  c.k = c.k.unaryExpr([&](double r) { return covariance(kind, r); });
-  return c;
-}
-
 /// Cholesky with the least jitter (relative to the diagonal, powers of 100) that succeeds.
 Cholesky factorise(MatrixXd k) {
   const double diagonal = k.diagonal().mean();
@@ -59,7 +45,7 @@ double gp_negative_log_likelihood(const MatrixD& inputs, const MatrixXd& targets
   const double n_targets = static_cast<double>(targets.cols());
   const GpParameters parameters = parameters_of(theta, kind);
   const MatrixD scaled = divided(inputs, parameters.length_scales);
-  const Covariances c = covariances(kind, scaled, true);
+  const Covariances c = covariances(kind, scaled);
   MatrixXd k = parameters.signal_variance * c.k;
   k.diagonal().array() += parameters.noise_variance;
   const Cholesky factor(k);
@@ -127,7 +113,7 @@ GpParameters fit_gp(const MatrixD& inputs, const MatrixXd& targets, const GpFitO
 
 GaussianProcess::GaussianProcess(const MatrixD& inputs, const MatrixXd& targets, GpParameters parameters)
     : parameters_(std::move(parameters)), scaled_inputs_(divided(inputs, parameters_.length_scales)) {
-  MatrixXd k = parameters_.signal_variance * covariances(parameters_.covariance, scaled_inputs_, false).k;
+  MatrixXd k = parameters_.signal_variance * covariances(parameters_.covariance, scaled_inputs_).k;
   k.diagonal().array() += parameters_.noise_variance;
   const Cholesky factor = factorise(std::move(k));
   weights_ = factor.solve(targets);

@@ -39,27 +39,44 @@ double covariance(Covariance kind, double r) {
   return 0;
 }
 
-double covariance_slope(Covariance kind, double r) {
-  switch (kind) {
-    case Covariance::exponential:
-      return -std::exp(-r) / std::max(r, 1e-9);
-    case Covariance::matern32:
-      return -3 * std::exp(-std::sqrt(3.0) * r);
-    case Covariance::matern52: {
-      const double a = std::sqrt(5.0) * std::min(r, 1e3);
-      return -5.0 / 3.0 * (1 + a) * std::exp(-a);
-    }
-    case Covariance::gaussian:
-      return -std::exp(-0.5 * r * r);
-  }
-  return 0;
-}
-
 Eigen::MatrixXd squared_distances(const MatrixD& a, const MatrixD& b) {
   Eigen::MatrixXd distances = -2 * (a * b.transpose());
   distances.colwise() += a.rowwise().squaredNorm();
   distances.rowwise() += b.rowwise().squaredNorm().transpose();
   return distances.cwiseMax(0);
+}
+
+Covariances covariances(Covariance kind, const MatrixD& scaled) {
+  using Array = Eigen::ArrayXXd;
+  Covariances c{squared_distances(scaled, scaled), {}, {}};
+  c.squares.diagonal().setZero();
+  const Array r = c.squares.array().sqrt().min(1e3);
+  const auto decay = [](const Array& exponents) -> Array {
+    return (exponents > -700).select(exponents.exp(), 0);  // Eigen's own ends above 0
+  };
+  switch (kind) {
+    case Covariance::exponential:
+      c.k = decay(-r);
+      c.slope = -c.k.array() / r.max(1e-9);
+      break;
+    case Covariance::matern32: {
+      const Array a = std::sqrt(3.0) * r, e = decay(-a);
+      c.k = (1 + a) * e;
+      c.slope = -3 * e;
+      break;
+    }
+    case Covariance::matern52: {
+      const Array a = std::sqrt(5.0) * r, e = decay(-a);
+      c.k = (1 + a + a.square() / 3) * e;
+      c.slope = -5.0 / 3.0 * (1 + a) * e;
+      break;
+    }
+    case Covariance::gaussian:
+      c.k = decay(-0.5 * c.squares.array());
+      c.slope = -c.k;
+      break;
+  }
+  return c;
 }
 
 }  // namespace elrom::math

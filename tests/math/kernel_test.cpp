@@ -17,11 +17,33 @@ TEST(Kernel, IsOneAtZeroAndZeroFarAway) {
   }
 }
 
-TEST(Kernel, SlopeEqualsDifferences) {
+TEST(Kernel, OfAllPairsIsThatOfEachPair) {
+  MatrixD cases(5, 2);
+  cases << 0, 0, 0.3, -0.2, 0.8, 0.1, 9, 30, 1e150, -1e150;
   for (Covariance kind : every) {
+    const Covariances c = covariances(kind, cases);
+
+    for (Eigen::Index i = 0; i < 5; ++i)
+      for (Eigen::Index j = 0; j < 5; ++j) {
+        const double r = (cases.row(i) - cases.row(j)).norm();
+        EXPECT_NEAR(c.squares(i, j), r * r, 1e-12 * r * r) << name_of(kind);
+        EXPECT_NEAR(c.k(i, j), covariance(kind, r), 1e-15) << name_of(kind);
+      }
+    EXPECT_EQ(c.k(0, 4), 0) << name_of(kind);
+  }
+}
+
+TEST(Kernel, SlopeEqualsDifferences) {
+  MatrixD cases(3, 1);
+  cases << 0, 0.8, 1e7;
+  for (Covariance kind : every) {
+    const Eigen::MatrixXd slope = covariances(kind, cases).slope;
+
     const double r = 0.8, h = 1e-6;
-    const double slope = (covariance(kind, r + h) - covariance(kind, r - h)) / (2 * h);
-    EXPECT_NEAR(covariance_slope(kind, r) * r, slope, 1e-9) << name_of(kind);
+    const double by_differences = (covariance(kind, r + h) - covariance(kind, r - h)) / (2 * h);
+    EXPECT_NEAR(slope(0, 1) * r, by_differences, 1e-9) << name_of(kind);
+    EXPECT_EQ(slope(0, 2), 0) << name_of(kind);
+    EXPECT_TRUE(slope.allFinite()) << name_of(kind);
   }
 }
 

@@ -19,18 +19,6 @@ using Eigen::VectorXd;
 /// Prior variance of the field's mean, in units of the signal: large, so that the data fix the mean.
 constexpr double mean_variance = 100;
 
-struct Stationary {
-  MatrixXd squares, k, slope;  // r^2, m(r), (dm/dr) / r
-};
-
-Stationary stationary_of(const MatrixD& scaled, math::Covariance kind) {
-  Stationary m{math::squared_distances(scaled, scaled), {}, {}};
-  m.squares.diagonal().setZero();
-  m.k = m.squares.unaryExpr([=](double s) { return math::covariance(kind, std::sqrt(s)); });
-  m.slope = m.squares.unaryExpr([=](double s) { return math::covariance_slope(kind, std::sqrt(s)); });
-  return m;
-}
-
 /// d J / d log(length) of each input, from q = dJ/dK * (dk/dr) / r. @param a inputs over their lengths
 VectorXd length_slopes(const MatrixXd& q, const MatrixD& a) {
   const VectorXd row_sums = q.rowwise().sum();
@@ -56,7 +44,7 @@ double symmetric_objective(const MatrixD& x, math::Covariance kind, const Criter
   const VectorXd inverse = (-theta.head(p)).array().exp();
   const double linear = std::exp(theta[p]), noise = std::exp(theta[p + 1]);
   const MatrixD a = x * inverse.asDiagonal();
-  const Stationary m = stationary_of(a, kind);
+  const auto m = math::covariances(kind, a);
   const MatrixXd dots = a * a.transpose();
   MatrixXd slope;
   const MatrixXd k = (m.k + linear * dots).array() + mean_variance;
@@ -79,7 +67,7 @@ double antisymmetric_objective(const MatrixD& a, const MatrixD& o, const MatrixX
   const Index p = o.cols();
   const VectorXd weights = theta.head(p).array().exp();
   const double linear = std::exp(theta[p]), noise = std::exp(theta[p + 2]);
-  const Stationary m = stationary_of(a * std::exp(-theta[p + 1]), kind);
+  const auto m = math::covariances(kind, a * std::exp(-theta[p + 1]));
   const MatrixXd products = o * weights.asDiagonal() * o.transpose();
   const MatrixXd near = m.k.array() + linear;
   MatrixXd slope;
@@ -103,7 +91,7 @@ double stationary_objective(const MatrixD& x, const MatrixXd& gram, math::Covari
   const double noise = std::exp(theta[n]);
   MatrixD a = x;
   for (Index j = 0; j < x.cols(); ++j) a.col(j) *= std::exp(-theta[std::min(j, n - 1)]);
-  const Stationary m = stationary_of(a, kind);
+  const auto m = math::covariances(kind, a);
   MatrixXd slope;
   const double value = leave_one_out_error(m.k, noise, gram, &slope);
 

@@ -17,10 +17,18 @@ enum class Covariance { exponential, matern32, matern52, gaussian };
 
 /// k(r); far cases give 0, never a NaN.
 [[nodiscard]] double covariance(Covariance kind, double r);
-/// (dk/dr) / r, finite at r = 0 for the differentiable ones (the exponential's is held at r = 1e-9).
-[[nodiscard]] double covariance_slope(Covariance kind, double r);
 
 /// Squared distances between the rows of a (n, p) and b (m, p): (n, m), never negative.
 [[nodiscard]] Eigen::MatrixXd squared_distances(const MatrixD& a, const MatrixD& b);
+
+/// Of all pairs of n cases, (n, n) each.
+struct Covariances {
+  Eigen::MatrixXd squares;  ///< r^2
+  Eigen::MatrixXd k;        ///< covariance()
+  /// (dk/dr) / r, finite at r = 0 for the differentiable ones (the exponential's is held at r = 1e-9).
+  Eigen::MatrixXd slope;
+};
+/// With one exponential a pair, several pairs at a time. @param scaled inputs over their lengths, (n, p)
+[[nodiscard]] Covariances covariances(Covariance kind, const MatrixD& scaled);
 
 }  // namespace elrom::math
