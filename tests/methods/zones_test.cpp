@@ -61,6 +61,8 @@ TEST(Zones, ProductsAreWeightedByCell) {
         double{zone.weights[c]} * a.col(26 + c).cast<double>() * b.col(26 + c).cast<double>().transpose();
 
   EXPECT_TRUE(zone.gram(a, b).isApprox(expected, 1e-9));
+  const MatrixF copy = a;
+  EXPECT_TRUE(zone.gram(a, a).isApprox(zone.gram(a, copy), 1e-9));
 }
 
 }  // namespace

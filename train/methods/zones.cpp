@@ -26,13 +26,18 @@ bool keeps_planes(const field::Mirror& mirror, std::size_t n_columns) {
 
 Eigen::MatrixXd Zone::gram(const MatrixF& a, const MatrixF& b) const {
   constexpr Eigen::Index block = 1024;
+  const bool same = &a == &b;  // one triangle then gives the other
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(a.rows(), b.rows());
   for (Eigen::Index begin = 0; begin < weights.size(); begin += block) {
     const auto n = std::min(block, weights.size() - begin);
-    const MatrixD left = a.middleCols(first_cell + begin, n).cast<double>(),
-                  right = b.middleCols(first_cell + begin, n).cast<double>();
-    gram += left * weights.segment(begin, n).cast<double>().asDiagonal() * right.transpose();
+    const Eigen::RowVectorXd own = weights.segment(begin, n).cast<double>();
+    const MatrixD left = a.middleCols(first_cell + begin, n).cast<double>();
+    if (same)
+      gram.selfadjointView<Eigen::Lower>().rankUpdate(MatrixD(left * own.cwiseSqrt().asDiagonal()));
+    else
+      gram += left * own.asDiagonal() * b.middleCols(first_cell + begin, n).cast<double>().transpose();
   }
+  if (same) gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
   return gram;
 }
 
