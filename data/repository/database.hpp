@@ -31,6 +31,14 @@ class DbRows {
   [[nodiscard]] virtual std::string text(int i) const = 0;
 };
 
+/// What `read` makes of each row.
+template <class Read>
+auto list_of(std::unique_ptr<DbRows> rows, const Read& read) {
+  std::vector<decltype(read(*rows))> all;
+  while (rows->next()) all.push_back(read(*rows));
+  return all;
+}
+
 /// Another transaction was first.
 struct LostRace {};
 

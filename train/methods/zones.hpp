@@ -19,7 +19,8 @@ struct Zone {
 
   /// Its cells of `rows`. @param rows (n, n_cells)
   [[nodiscard]] auto part(const MatrixF& rows) const { return rows.middleCols(first_cell, weights.size()); }
-  /// A W B^T over its cells, in double, (n, m). @param a (n, n_cells) @param b (m, n_cells)
+  /// A W B^T over its cells, in double, (n, m). Of a matrix with itself, the same object, one triangle is
+  /// computed. @param a (n, n_cells) @param b (m, n_cells)
   [[nodiscard]] Eigen::MatrixXd gram(const MatrixF& a, const MatrixF& b) const;
   /// sum += what is predicted for its cells, weighted. @param predicted (n, weights.size())
   void add(MatrixF& sum, const MatrixF& predicted) const;
