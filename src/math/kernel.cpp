@@ -52,7 +52,8 @@ Covariances covariances(Covariance kind, const MatrixD& scaled) {
   c.squares.diagonal().setZero();
   const Array r = c.squares.array().sqrt().min(1e3);
   const auto decay = [](const Array& exponents) -> Array {
-    return (exponents > -700).select(exponents.exp(), 0);  // Eigen's own ends above 0
+    const Array powers = exponents.exp();         // by itself: within select() it is taken one by one
+    return (exponents > -700).select(powers, 0);  // Eigen's own ends above 0
   };
   switch (kind) {
     case Covariance::exponential:

@@ -68,7 +68,7 @@ Json measure_algorithm(const std::string& algorithm, const std::vector<Problem>&
                        const benchmark::Arguments& arguments, Log& log) {
   settings.algorithm = algorithm;
   std::vector<networks::SearchResult> results(problems.size());
-  const networks::TrainingBudget budget{settings.max_epochs, settings.patience};
+  const networks::TrainingBudget budget{settings.max_epochs, settings.patience, 0};
   const Stopwatch watch;
   base::parallel_for(problems.size(), arguments.threads, [&](std::size_t i, int) {
     const auto evaluate = [&](const networks::Hyperparameters& h, base::Seed seed,

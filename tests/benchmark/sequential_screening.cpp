@@ -91,7 +91,8 @@ class Loop {
  private:
   void run_epoch(nn::Sequential& network, ::torch::optim::Adam& adam, const Tensor& targets,
                  std::size_t i_build, std::size_t epoch) const {
-    const Tensor order = index_of(networks::epoch_order(seed_, i_build, epoch, train_rows_));
+    const Tensor order =
+        index_of(networks::epoch_order(seed_, i_build, epoch, train_rows_.size(), settings_.epoch_records));
     for (std::int64_t first = 0; first < order.size(0); first += settings_.batch_size) {
       const Tensor rows =
           order.slice(0, first, std::min<std::int64_t>(first + settings_.batch_size, order.size(0)));

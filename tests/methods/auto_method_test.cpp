@@ -197,6 +197,68 @@ TEST(Auto, ColumnsThatAllGetRightAskForNoFurtherMembers) {
   EXPECT_EQ(fit.candidates[2].mean_weight(), 0);
 }
 
+/// Sixty cases in six folds, so that one fold is too few to judge by and three are enough.
+struct Race {
+  field::CaseSet cases = test::toy_cases(60);
+  field::FieldData data = test::toy_field(cases);
+  MatrixF errors = noise(data, "good", 0.1);
+  AutoFit against(const MatrixF& other) {
+    const Fake good("good", errors), late("late", other);
+    return fit_auto(data, math::all_rows(60), std::vector<const Method*>{&good, &late}, {.n_folds = 6}, {});
+  }
+};
+
+TEST(AutoRace, WhatCannotGainLeavesAfterSomeFolds) {
+  // Errors of the good one and independent ones beside them: no weight but none lowers the sum.
+  Race race;
+
+  const AutoFit fit = race.against(race.errors + noise(race.data, "more", 0.3));
+
+  EXPECT_EQ(fit.candidates[0].left_after, 0U);
+  EXPECT_EQ(fit.candidates[1].left_after, 3U);
+  EXPECT_EQ(fit.candidates[1].mean_weight(), 0);
+  EXPECT_NEAR(fit.candidates[1].nrmse, std::sqrt(10.0) * fit.candidates[0].nrmse,
+              0.05 * fit.candidates[1].nrmse);
+}
+
+TEST(AutoRace, NoMoreDoesWhatIsButALittleWorse) {
+  // A gain would be far below the one from which a blend is taken, by chance or not.
+  Race race;
+
+  EXPECT_EQ(race.against(race.errors + noise(race.data, "more", 0.002)).candidates[1].left_after, 3U);
+}
+
+TEST(AutoRace, WhatMayGainStays) {
+  Race race;
+  const auto equal = race.against(noise(race.data, "other", 0.1)),
+             worse = race.against(noise(race.data, "other", 0.2)), better = race.against(0.5F * race.errors);
+
+  EXPECT_EQ(equal.candidates[1].left_after, 0U);
+  EXPECT_NEAR(equal.candidates[1].mean_weight(), 0.5, 0.05);
+  EXPECT_EQ(worse.candidates[1].left_after, 0U);
+  EXPECT_NEAR(worse.candidates[1].mean_weight(), 0.2, 0.05);
+  EXPECT_EQ(better.candidates[1].mean_weight(), 1);
+}
+
+TEST(AutoRace, WhatGainsInSomeColumnsStays) {
+  // Worse on the whole, and the better one in columns where the first is far off: a band of their own.
+  Race race;
+  const MatrixF late = race.errors + 8 * lopsided(race.data, "more", 0.02F);
+  race.errors = lopsided(race.data, "first", 8) + 0.01F * race.errors;
+
+  const AutoFit fit = race.against(late);
+
+  EXPECT_EQ(fit.candidates[1].left_after, 0U);
+}
+
+TEST(AutoRace, FewCasesAreNoReasonToLeave) {
+  Contest contest;
+  const MatrixF errors = noise(contest.data, "good", 0.1);
+  const Fake good("good", errors), bad("bad", errors + noise(contest.data, "more", 0.3));
+
+  EXPECT_EQ(contest.run({&good, &bad}).candidates[1].left_after, 0U);
+}
+
 TEST(Auto, ACandidateThatDivergesOnlyLoses) {
   Contest contest;
   const Fake broken("broken", {}), good("good", noise(contest.data, "a", 0.1));

@@ -109,6 +109,23 @@ TEST(CrossPredict, NeverShowsAModelItsOwnFold) {
   }
 }
 
+TEST(CrossPredict, LearnsFromAllOtherFoldsWhicheverAreWanted) {
+  const field::CaseSet cases = test::toy_cases(12);
+  const field::FieldData data = test::toy_field(cases, 0.01);
+  const Folds folds = load_grouped_folds(cases.loads, math::all_rows(12), 4);
+
+  for (const std::string name : {"linear", "pod_gp_per_mode"}) {
+    const auto method = make_peer(name);
+    const MatrixF all = method->cross_predict(data, folds, {});
+    const MatrixF one = method->predict_folds(data, folds, std::vector<std::size_t>{2}, {.n_threads = 2});
+    for (std::size_t k = 0; k < 4; ++k)
+      for (const std::size_t row : folds[k]) {
+        const auto i = static_cast<Eigen::Index>(row);
+        EXPECT_TRUE(one.row(i) == (k == 2 ? MatrixF(all.row(i)) : MatrixF::Zero(1, all.cols()))) << name;
+      }
+  }
+}
+
 TEST(CrossPredict, GivesTheSameBitsForAnyNumberOfThreads) {
   const field::CaseSet cases = test::toy_cases(12);
   const field::FieldData data = test::toy_field(cases, 0.01);

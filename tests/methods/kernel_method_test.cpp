@@ -328,12 +328,18 @@ TEST(KernelMethod, FoldsOfAWarmStartErrAsModelsThatDidNotSeeThem) {
 
   const MatrixF cold = make_kernel_method()->cross_predict(data, folds, {});
   const MatrixF at_once = make_kernel_method()->cross_predict(data, folds, {.warm = &warm});
+  const MatrixF one =
+      make_kernel_method()->predict_folds(data, folds, std::vector<std::size_t>{2}, {.warm = &warm});
 
   const double error = (cold - data.values).norm();
   EXPECT_NEAR((at_once - data.values).norm(), error, 0.06 * error);
   EXPECT_GT((at_once - data.values).norm(), (data.values - test::toy_field(cases).values).norm())
       << "noise that nobody could have known";
   EXPECT_LT((at_once - cold).norm(), 0.3 * error);
+  const auto in_fold = static_cast<Eigen::Index>(folds[2].front()),
+             in_another = static_cast<Eigen::Index>(folds[3].front());
+  EXPECT_TRUE(one.row(in_fold) == at_once.row(in_fold));
+  EXPECT_TRUE((one.row(in_another).array() == 0).all()) << "it was not wanted";
 }
 
 TEST(KernelMethod, AnEarlierModelOfOtherFeaturesIsNoStart) {

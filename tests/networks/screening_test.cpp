@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "elrom/base/error.hpp"
@@ -72,6 +73,21 @@ TEST(Screening, MeanOverPlanesOfEqualCountIsTheColumnError) {
   for (Eigen::Index c = 0; c < 3; ++c) {
     EXPECT_NEAR(mean[c], result.column_error()[static_cast<std::size_t>(c)], 1e-9 * mean[c]);
   }
+}
+
+TEST(Screening, ShortEpochsTogetherVisitEveryRecordOnce) {
+  std::vector<std::uint32_t> together;
+  for (std::size_t epoch = 3; epoch < 6; ++epoch) {
+    const auto some = epoch_order(base::Seed(1), 0, epoch, 100, 40);
+    EXPECT_LE(some.size(), 40U);
+    together.insert(together.end(), some.begin(), some.end());
+  }
+
+  EXPECT_NE(together, epoch_order(base::Seed(1), 0, 0, 100, 0)) << "a sweep has an order of its own";
+  EXPECT_EQ(together, epoch_order(base::Seed(1), 0, 1, 100, 0));
+  std::ranges::sort(together);
+  EXPECT_EQ(together.back(), 99U);
+  EXPECT_EQ(std::ranges::adjacent_find(together), together.end());
 }
 
 TEST(Screening, ThreadsDoNotChangeABit) {

@@ -197,7 +197,7 @@ TEST_F(Accuracy, JsonHoldsEveryFieldMethodAndCase) {
 
 TEST_F(Accuracy, ChoiceIsToldAsTheBundleHasIt) {
   const auto& field = report_->fields[0];
-  ASSERT_EQ(field.choice.candidates.size(), 3u);
+  ASSERT_EQ(field.choice.candidates.size(), 4u);
   EXPECT_EQ(field.methods[0].detail, "nearest case 0.25, linear 0.75");
   EXPECT_TRUE(report_->fields[1].choice.candidates.empty());
 
@@ -206,10 +206,13 @@ TEST_F(Accuracy, ChoiceIsToldAsTheBundleHasIt) {
   EXPECT_EQ(root["nrmse_by_band"], 0.39);
   EXPECT_EQ(root["scale"], "primary_air^0");
   EXPECT_EQ(root["candidates"][1]["weight"], 0.75);
-  EXPECT_TRUE(root["candidates"][2]["nrmse"].is_null());
+  EXPECT_EQ(root["candidates"][1]["left_after"], 0);
+  EXPECT_EQ(root["candidates"][2]["left_after"], 1);
+  EXPECT_TRUE(root["candidates"][3]["nrmse"].is_null());
   const auto page = html_page(*report_);
   const auto section = page.substr(page.find("id=\"choice\""));
-  EXPECT_THAT(section, HasSubstr("<td class=\"mark best\">0.450</td><td class=\"mark\">-</td>"));
+  EXPECT_THAT(section, HasSubstr("<td class=\"mark best\">0.450</td><td class=\"mark\">~0.600</td>"
+                                 "<td class=\"mark\">-</td>"));
   EXPECT_THAT(section, HasSubstr("<td>0.390</td><td>primary_air^0</td>"));
 }
 

@@ -33,5 +33,38 @@ TEST(FieldStage, IntervalsAreThoseOfTheBlendThatAnswers) {
   EXPECT_NEAR(std::sqrt(of_right), 0.01, 0.002);
 }
 
+/// Predicts the truth, and remembers into how many folds the cases were cut each time.
+class Counting final : public methods::Method {
+ public:
+  [[nodiscard]] std::string name() const override { return "counting"; }
+  [[nodiscard]] std::string key(const std::string&) const override { return name(); }
+  [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
+                                                       std::span<const std::size_t> cases,
+                                                       const methods::FitContext& context) const override {
+    return methods::make_peer("nearest")->fit(data, cases, context);
+  }
+  [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const methods::Folds& folds,
+                                      std::span<const std::size_t>,
+                                      const methods::FitContext&) const override {
+    n_folds.push_back(folds.size());
+    return 0.9F * data.values;
+  }
+  mutable std::vector<std::size_t> n_folds;
+};
+
+TEST(FieldStage, FewCasesAreLeftOutFewAtATimeForTheIntervals) {
+  for (const std::size_t n_cases : {127U, 128U}) {
+    const field::CaseSet cases = test::toy_cases(n_cases);
+    const field::FieldData data = test::toy_field(cases);
+    const Counting method;
+
+    (void)fit_field({.name = "auto", .candidates = {&method}, .data = data, .band_edges = {}, .n_folds = 4},
+                    io::StageCache(), {});
+
+    const std::size_t for_intervals = n_cases < 128 ? 8 : 4;
+    EXPECT_EQ(method.n_folds, (std::vector<std::size_t>{4, for_intervals}));
+  }
+}
+
 }  // namespace
 }  // namespace elrom::study

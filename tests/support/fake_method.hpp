@@ -25,10 +25,18 @@ class FakeMethod final : public methods::Method {
                                                        const methods::FitContext& context) const override {
     return methods::make_peer("nearest")->fit(data, cases, context);
   }
-  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const methods::Folds&,
+  [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const methods::Folds& folds,
+                                      std::span<const std::size_t> wanted,
                                       const methods::FitContext&) const override {
     if (errors_.size() == 0) throw NumericalError("it diverged");
-    return data.values - errors_;
+    MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());
+    for (const std::size_t k : wanted) {
+      for (const std::size_t row : folds[k]) {
+        const auto i = static_cast<Eigen::Index>(row);
+        predictions.row(i) = data.values.row(i) - errors_.row(i);
+      }
+    }
+    return predictions;
   }
 
  private:

@@ -140,5 +140,20 @@ TEST(Training, EvaluationIsTheMeanOverTargetsThatCount) {
   EXPECT_NEAR(mse, expected, 1e-6 * expected);
 }
 
+TEST(Training, AnEpochStepsThroughNoMoreRecordsThanItMay) {
+  const auto problem = noisy_problem(false);  // 40 records
+  const networks::Hyperparameters hyperparameters{.n_layers = 1, .n_units = 4, .batch_size = 5};
+  Training some(problem, hyperparameters, base::Seed(9), {}),
+      all(problem, hyperparameters, base::Seed(9), {});
+
+  ASSERT_TRUE(some.run_epoch(15));
+  EXPECT_EQ(some.adam().n_steps(), 3) << "13 records, the last batch short";
+  ASSERT_TRUE(some.run_epoch(15) && some.run_epoch(15) && all.run_epoch());
+
+  EXPECT_EQ(some.progress().epoch, 3);
+  EXPECT_EQ(some.progress().history.size(), 3U);
+  EXPECT_EQ(all.adam().n_steps(), 8);
+}
+
 }  // namespace
 }  // namespace elrom::torch

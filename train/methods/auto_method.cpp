@@ -1,5 +1,7 @@
 #include "elrom/methods/auto_method.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -44,6 +46,19 @@ VectorXd variation_of_columns(const field::FieldData& data, std::span<const std:
 /// A member with less costs more to evaluate than it gives.
 constexpr double negligible = 0.1;
 
+/// What may still be is within so many standard errors of the cases. Cases of a fold share a model, so they
+/// tell less than as many independent ones would: hence three and not two.
+constexpr double chance = 3;
+constexpr std::size_t fewest_cases = 24;  ///< that a candidate is judged by
+
+/// Numbers of the folds of each round: the middle one, then every third, then the rest.
+std::vector<std::vector<std::size_t>> rounds_of(std::size_t n_folds) {
+  std::vector<std::vector<std::size_t>> rounds(3);
+  for (std::size_t k = 0; k < n_folds; ++k) rounds[k == n_folds / 2 ? 0 : k % 3 == 1 ? 1 : 2].push_back(k);
+  std::erase_if(rounds, [](const auto& round) { return round.empty(); });
+  return rounds;
+}
+
 /// Weights that minimise w^T G w for sum w = 1 over the chosen members, without the sign condition.
 VectorXd unconstrained(const MatrixXd& gram, const std::vector<Index>& members) {
   const auto n = static_cast<Index>(members.size());
@@ -75,24 +90,29 @@ MatrixXd mixed(const MatrixXd& a, const MatrixXd& b, double share) {
 class Contest {
  public:
   Contest(const field::FieldData& data, std::span<const std::size_t> cases,
-          std::span<const Method* const> methods, const Folds& folds)
+          std::span<const Method* const> methods, const Folds& folds, const AutoOptions& options)
       : data_(data),
         cases_(cases),
         methods_(methods),
         folds_(folds),
+        options_(options),
+        fold_of_(fold_of_each(cases, folds)),
         variation_(variation_of_columns(data, cases)) {}
 
   void run(const FitContext& context) {
     std::exception_ptr first;
-    std::vector<MatrixF> all_errors;
     for (const Method* method : methods_) {
       CandidateScore score{.name = method->name(), .nrmse = std::numeric_limits<double>::quiet_NaN()};
       try {
-        MatrixF errors = errors_of(method->cross_predict(data_, folds_, context));
-        if (!errors.allFinite()) throw NumericalError(score.name + ": predictions are not finite");
-        score.nrmse = relative(math::sum_of_squares(errors));
-        standing_.push_back(scores_.size());
-        all_errors.push_back(std::move(errors));
+        Tried tried = race(*method, context);
+        score.nrmse = nrmse_of(tried);
+        if (tried.n_folds < folds_.size()) {
+          score.left_after = tried.n_folds;
+        } else {
+          standing_.push_back(scores_.size());
+          errors_.push_back(std::move(tried.errors));
+          blend_ = blend_so_far();
+        }
       } catch (const NumericalError& error) {
         if (!first) first = std::current_exception();
         score.failure = error.what();
@@ -100,30 +120,31 @@ class Contest {
       }
       scores_.push_back(std::move(score));
     }
-    if (all_errors.empty()) std::rethrow_exception(first);
-    sum_products(all_errors);
+    if (errors_.empty()) std::rethrow_exception(first);
+    sum_products();
+    errors_.clear();
   }
 
   /// Weights of the final model, and its cross-validated error: the best candidate, moved towards a blend and
   /// then towards a blend for each band of columns as far as those gain.
-  [[nodiscard]] AutoFit decide(const AutoOptions& options) const {
+  [[nodiscard]] AutoFit decide() const {
     MatrixD total = products_.front();
     for (std::size_t k = 1; k < products_.size(); ++k) total += products_[k];
     const MatrixXd gram = gram_of(total);
 
     // What is chosen or fitted by the errors that it is judged by is flattered: the other folds choose.
-    Answer answer{alone(gram)}, blend{weights_of(gram)}, by_band{band_weights(total, 0, options.band_edges)};
+    Answer answer{alone(gram)}, blend{weights_of(gram)}, by_band{band_weights(total, 0)};
     for (std::size_t k = 0; k < products_.size(); ++k) {
       const MatrixD others = total - products_[k];
       answer.of_folds.emplace_back(alone(gram_of(others)));
       blend.of_folds.emplace_back(weights_of(gram_of(others)));
-      by_band.of_folds.push_back(band_weights(others, folds_[k].size(), options.band_edges));
+      by_band.of_folds.push_back(band_weights(others, folds_[k].size()));
     }
     answer = judged(std::move(answer));
     const bool has_bands = by_band.weights.cols() > 1;
-    answer = moved(answer, judged(std::move(blend)), options.full_gain);
+    answer = moved(answer, judged(std::move(blend)));
     by_band = judged(std::move(by_band));
-    if (has_bands) answer = moved(answer, by_band, options.full_gain);
+    if (has_bands) answer = moved(answer, by_band);
     AutoFit fit{.candidates = scores_,
                 .nrmse = relative(answer.squares),
                 .nrmse_by_band = has_bands ? relative(by_band.squares) : NAN};
@@ -136,6 +157,94 @@ class Contest {
   }
 
  private:
+  /// What a candidate has shown so far.
+  struct Tried {
+    MatrixF errors;                 // (n_cases, n_cells), 0 where it was not tried
+    std::vector<std::size_t> rows;  // of errors that it was tried in
+    std::size_t n_folds = 0;
+  };
+  [[nodiscard]] Tried race(const Method& method, const FitContext& context) const {
+    Tried tried{MatrixF::Zero(static_cast<Index>(cases_.size()), data_.values.cols()), {}, 0};
+    if (errors_.empty()) {
+      try_in(method, math::all_rows(folds_.size()), tried, context);
+      return tried;
+    }
+    for (const auto& round : rounds_of(folds_.size())) {
+      try_in(method, round, tried, context);
+      if (!may_gain(tried)) break;
+    }
+    return tried;
+  }
+  void try_in(const Method& method, std::span<const std::size_t> wanted, Tried& tried,
+              const FitContext& context) const {
+    const MatrixF predictions = method.predict_folds(data_, folds_, wanted, context);
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      if (std::ranges::find(wanted, fold_of_[i]) == wanted.end()) continue;
+      const auto row = static_cast<Index>(cases_[i]);
+      tried.errors.row(static_cast<Index>(i)) = data_.values.row(row) - predictions.row(row);
+      tried.rows.push_back(i);
+    }
+    if (!tried.errors.allFinite()) throw NumericalError(method.name() + ": predictions are not finite");
+    tried.n_folds += wanted.size();
+  }
+  [[nodiscard]] double nrmse_of(const Tried& tried) const {
+    if (tried.n_folds == folds_.size()) return relative(math::sum_of_squares(tried.errors));
+    const MatrixF& best = *std::ranges::min_element(errors_, {}, math::sum_of_squares);
+    const auto squares = [&](const MatrixF& of) { return math::sum_of_squares(of(tried.rows, Eigen::all)); };
+    return relative(math::sum_of_squares(best)) * std::sqrt(squares(tried.errors) / squares(best));
+  }
+
+  /// Whether a candidate may move the answer. With weight w it lowers the squared error of a blend by
+  /// 2 w x - w^2 d.d, where x = -b.d, b are the blend's errors and d the candidate's less those; the best
+  /// weight is x / d.d. The gains of x as large as chance allows, in each band of columns that would give the
+  /// candidate more than a negligible weight, are together compared with the gain that moved() would follow
+  /// by no more than a negligible share.
+  [[nodiscard]] bool may_gain(const Tried& tried) const {
+    if (tried.rows.size() < fewest_cases) return true;
+    const auto n = static_cast<Index>(tried.rows.size());
+    MatrixXd x(n, variation_.size());
+    VectorXd departure = VectorXd::Zero(variation_.size());
+    double squares = 0;
+    for (Index i = 0; i < n; ++i) {
+      const auto row = static_cast<Index>(tried.rows[static_cast<std::size_t>(i)]);
+      const Eigen::RowVectorXf b = blend_.row(row), d = tried.errors.row(row) - b;
+      x.row(i) = -by_column(b.cwiseProduct(d));
+      departure += by_column(d.cwiseAbs2());
+      squares += static_cast<double>(b.squaredNorm());
+    }
+    double gain = 0;
+    for (const auto& columns : bands_of(squares_in_columns(blend_))) {
+      math::RunningMoments moments;
+      for (const double of_case : VectorXd(x(Eigen::all, columns).rowwise().sum())) moments.add(of_case);
+      const auto count = static_cast<double>(n);
+      const double most = count * moments.mean() + chance * std::sqrt(count) * moments.deviation();
+      const double departed = departure(columns).sum();
+      if (!(most > negligible * departed)) continue;
+      const double weight = std::min(1.0, most / departed);
+      gain += weight * (2 * most - weight * departed);
+    }
+    return gain > 2 * negligible * options_.full_gain * squares;
+  }
+
+  /// Errors of the best blend of the candidates that stand, (n_cases, n_cells).
+  [[nodiscard]] MatrixF blend_so_far() const {
+    const auto n = static_cast<Index>(errors_.size());
+    MatrixXd gram = MatrixXd::Zero(n, n);
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j <= i; ++j) {
+        const MatrixF &a = errors_[static_cast<std::size_t>(i)], &b = errors_[static_cast<std::size_t>(j)];
+        for (Index row = 0; row < a.rows(); ++row)
+          gram(i, j) += a.row(row).cast<double>().dot(b.row(row).cast<double>());
+        gram(j, i) = gram(i, j);
+      }
+    }
+    const VectorXd weights = weights_of(gram);
+    MatrixF blend = MatrixF::Zero(errors_.front().rows(), errors_.front().cols());
+    for (Index i = 0; i < n; ++i)
+      if (weights[i] > 0) blend += static_cast<float>(weights[i]) * errors_[static_cast<std::size_t>(i)];
+    return blend;
+  }
+
   /// Weights from all folds, those from all folds but one, and the squared error of the latter in the folds
   /// that they have not seen.
   struct Answer {
@@ -151,9 +260,9 @@ class Contest {
   }
   /// From one answer towards another: all the way where that lowers the error by full_gain. No jump at any
   /// gain, so that a last bit, which changes every gain a little, changes the answer a little.
-  [[nodiscard]] Answer moved(const Answer& from, const Answer& to, double full_gain) const {
+  [[nodiscard]] Answer moved(const Answer& from, const Answer& to) const {
     const double share =
-        std::clamp((1 - relative(to.squares) / relative(from.squares)) / full_gain, 0.0, 1.0);
+        std::clamp((1 - relative(to.squares) / relative(from.squares)) / options_.full_gain, 0.0, 1.0);
     if (!(share > 0)) return from;
     Answer answer{mixed(from.weights, to.weights, share)};
     for (std::size_t k = 0; k < products_.size(); ++k)
@@ -174,16 +283,15 @@ class Contest {
 
   /// Products of the candidates' errors, summed over the planes and over the cases of each fold:
   /// (n * n, n_columns), so that the Gram matrix of any set of columns is a sum.
-  void sum_products(const std::vector<MatrixF>& errors) {
-    const auto n = static_cast<Index>(errors.size()), n_columns = variation_.size();
-    const std::vector<std::size_t> fold_of = fold_of_each(cases_, folds_);
+  void sum_products() {
+    const auto n = static_cast<Index>(errors_.size()), n_columns = variation_.size();
     products_.assign(folds_.size(), MatrixD::Zero(n * n, n_columns));
     for (std::size_t i_case = 0; i_case < cases_.size(); ++i_case) {
-      MatrixD& products = products_[fold_of[i_case]];
+      MatrixD& products = products_[fold_of_[i_case]];
       for (Index i = 0; i < n; ++i) {
         for (Index j = 0; j <= i; ++j) {
-          const auto a = errors[static_cast<std::size_t>(i)].row(static_cast<Index>(i_case)).cast<double>();
-          const auto b = errors[static_cast<std::size_t>(j)].row(static_cast<Index>(i_case)).cast<double>();
+          const auto a = errors_[static_cast<std::size_t>(i)].row(static_cast<Index>(i_case)).cast<double>();
+          const auto b = errors_[static_cast<std::size_t>(j)].row(static_cast<Index>(i_case)).cast<double>();
           for (Index first = 0; first < a.size(); first += n_columns)
             products.row(i * n + j) += a.segment(first, n_columns).cwiseProduct(b.segment(first, n_columns));
         }
@@ -210,17 +318,12 @@ class Contest {
 
   /// Weights for each band of columns by the errors in `products`, which leave out so many cases: (n,
   /// n_columns), or (n, 1) when all columns are in one band.
-  [[nodiscard]] MatrixXd band_weights(const MatrixD& products, std::size_t cases_left_out,
-                                      const std::vector<double>& edges) const {
+  [[nodiscard]] MatrixXd band_weights(const MatrixD& products, std::size_t cases_left_out) const {
     const MatrixXd gram = gram_of(products);
     const double share = 1 - static_cast<double>(cases_left_out) / static_cast<double>(cases_.size());
     Index best = 0;
     gram.diagonal().minCoeff(&best);
-    const VectorXd squares = products.row(best * (gram.rows() + 1));
-    std::vector<std::vector<Index>> bands(edges.size() + 1);
-    for (Index c = 0; c < products.cols(); ++c)
-      bands[networks::band_of(squares[c] / (share * variation_[c]), edges)].push_back(c);
-    std::erase_if(bands, [](const auto& columns) { return columns.empty(); });
+    const auto bands = bands_of(products.row(best * (gram.rows() + 1)) / share);
     const VectorXd everywhere = weights_of(gram);
     if (bands.size() == 1) return everywhere;
 
@@ -233,13 +336,23 @@ class Contest {
     return weights;
   }
 
-  [[nodiscard]] MatrixF errors_of(const MatrixF& predictions) const {
-    MatrixF errors(static_cast<Index>(cases_.size()), data_.values.cols());
-    for (std::size_t i = 0; i < cases_.size(); ++i) {
-      const auto row = static_cast<Index>(cases_[i]);
-      errors.row(static_cast<Index>(i)) = data_.values.row(row) - predictions.row(row);
-    }
-    return errors;
+  /// Columns of each band that has any. @param squares of the errors of all cases in each column
+  [[nodiscard]] std::vector<std::vector<Index>> bands_of(const VectorXd& squares) const {
+    std::vector<std::vector<Index>> bands(options_.band_edges.size() + 1);
+    for (Index c = 0; c < squares.size(); ++c)
+      bands[networks::band_of(squares[c] / variation_[c], options_.band_edges)].push_back(c);
+    std::erase_if(bands, [](const auto& columns) { return columns.empty(); });
+    return bands;
+  }
+  /// Sums over the planes, (n_columns). @param cells (n_cells)
+  [[nodiscard]] VectorXd by_column(const Eigen::RowVectorXf& cells) const {
+    const Index n_columns = variation_.size();
+    return cells.reshaped(n_columns, cells.size() / n_columns).cast<double>().rowwise().sum();
+  }
+  [[nodiscard]] VectorXd squares_in_columns(const MatrixF& errors) const {
+    VectorXd sums = VectorXd::Zero(variation_.size());
+    for (Index row = 0; row < errors.rows(); ++row) sums += by_column(errors.row(row).cwiseAbs2());
+    return sums;
   }
   [[nodiscard]] double relative(double squares) const {
     return math::nrmse(std::max(0.0, squares), variation_.sum(), 0);
@@ -250,9 +363,13 @@ class Contest {
   std::span<const std::size_t> cases_;
   std::span<const Method* const> methods_;
   const Folds& folds_;
-  VectorXd variation_;  // of each column
+  const AutoOptions& options_;
+  std::vector<std::size_t> fold_of_;  // of each case
+  VectorXd variation_;                // of each column
   std::vector<CandidateScore> scores_;
-  std::vector<std::size_t> standing_;  // places in scores_ of the n that ended in finite numbers
+  std::vector<std::size_t> standing_;  // places in scores_ of the n that were tried in all folds
+  std::vector<MatrixF> errors_;        // of those n, until their products are summed
+  MatrixF blend_;                      // errors of their best blend
   std::vector<MatrixD> products_;      // of each fold
 };
 
@@ -297,15 +414,17 @@ AutoFit fit_auto(const field::FieldData& data, std::span<const std::size_t> case
   const Folds folds = folds_of(cases, loads, context, [&](std::span<const std::size_t> rows) {
     return load_grouped_folds(loads, rows, options.n_folds);
   });
-  Contest contest(data, cases, candidates, folds);
+  Contest contest(data, cases, candidates, folds, options);
   contest.run(context);
-  AutoFit fit = contest.decide(options);
+  AutoFit fit = contest.decide();
 
   std::vector<model::BlendModel::Member> parts;
   std::string told;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const CandidateScore& score = fit.candidates[i];
     told += " " + score.name + " " + base::rounded(score.nrmse, 3) + (score.weights.empty() ? "" : "*");
+    if (score.left_after > 0)
+      told += fmt::format(" (left after {} of {} folds)", score.left_after, folds.size());
     if (!score.weights.empty()) parts.push_back({score.weights, candidates[i]->fit(data, cases, context)});
   }
   if (std::isfinite(fit.nrmse_by_band))

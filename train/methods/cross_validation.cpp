@@ -9,6 +9,7 @@
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/math/statistics.hpp"
 
 namespace elrom::methods {
 
@@ -110,8 +111,8 @@ void predict_case(const model::FieldModel& model, std::span<const double> inputs
   model.predict({.inputs = inputs, .planes = planes}, values, {}, workspace);
 }
 
-MatrixF cross_predict_by_fitting(const Method& method, const field::FieldData& data, const Folds& folds,
-                                 const FitContext& context, bool parallel) {
+MatrixF predict_by_fitting(const Method& method, const field::FieldData& data, const Folds& folds,
+                           std::span<const std::size_t> wanted, const FitContext& context, bool parallel) {
   MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());
   const auto& cases = *data.cases;
   const auto one_fold = [&](std::size_t k, const FitContext& fold_context) {
@@ -125,17 +126,23 @@ MatrixF cross_predict_by_fitting(const Method& method, const field::FieldData& d
       predict_case(*model, inputs, cases.mesh.n_planes, values, workspace);
     }
   };
+  parallel = parallel && wanted.size() > 1;
   FitContext fold_context = context;
   if (parallel) fold_context.n_threads = 1;
   base::parallel_for(
-      folds.size(), parallel ? context.n_threads : 1, [&](std::size_t k, int) { one_fold(k, fold_context); },
-      context.stop);
+      wanted.size(), parallel ? context.n_threads : 1,
+      [&](std::size_t i, int) { one_fold(wanted[i], fold_context); }, context.stop);
   return predictions;
 }
 
 MatrixF Method::cross_predict(const field::FieldData& data, const Folds& folds,
                               const FitContext& context) const {
-  return cross_predict_by_fitting(*this, data, folds, context, false);
+  return predict_folds(data, folds, math::all_rows(folds.size()), context);
+}
+
+MatrixF Method::predict_folds(const field::FieldData& data, const Folds& folds,
+                              std::span<const std::size_t> wanted, const FitContext& context) const {
+  return predict_by_fitting(*this, data, folds, wanted, context, false);
 }
 
 }  // namespace elrom::methods

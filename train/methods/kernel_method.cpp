@@ -73,14 +73,15 @@ class KernelMethod final : public Method {
   [[nodiscard]] std::unique_ptr<model::FieldModel> fit(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const override;
-  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
+  [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const Folds& folds,
+                                      std::span<const std::size_t> wanted,
                                       const FitContext& context) const override {
     if (context.warm != nullptr) {
       FieldParts field(data, rows_without(folds, folds.size()), context, options_.scale);
       if (field.earlier_kernel(0, 0) != nullptr && !field.nothing_to_learn())
-        return cross_predict_at_once(std::move(field), data, folds, context);
+        return predict_at_once(std::move(field), data, folds, wanted, context);
     }
-    return cross_predict_by_fitting(*this, data, folds, context, true);
+    return predict_by_fitting(*this, data, folds, wanted, context, true);
   }
 
  private:
@@ -101,8 +102,8 @@ class KernelMethod final : public Method {
     const auto most = c == 0 ? options_.most_modes : std::max<std::size_t>(options_.most_modes / 4, 1);
     return {most, options_.own_modes, may_drop};
   }
-  [[nodiscard]] MatrixF cross_predict_at_once(FieldParts field, const field::FieldData& data,
-                                              const Folds& folds, const FitContext& context) const;
+  [[nodiscard]] MatrixF predict_at_once(FieldParts field, const field::FieldData& data, const Folds& folds,
+                                        std::span<const std::size_t> wanted, const FitContext& context) const;
 
   KernelOptions options_;
 };
@@ -202,16 +203,19 @@ std::optional<AntisymmetricFit> fit_antisymmetry(const KernelFeatures& features,
 Learned KernelMethod::learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
                                           const std::vector<ZoneKernel>& symmetric,
                                           const field::FieldData& data, int n_threads) const {
+  std::vector<std::optional<AntisymmetricFit>> fits(options_.antisymmetric ? symmetric.size() : 0);
+  base::parallel_for(fits.size(), n_threads, [&](std::size_t k, int) {
+    const auto& [i_zone, zone, kernel] = symmetric[k];
+    const MatrixXd gram = zone.gram(values, values);
+    if (gram.trace() > 0)
+      fits[k] = fit_antisymmetry(field.features, c, kernel, gram, field.earlier_kernel(c, i_zone));
+  });
   Learned learned;
   std::vector<MatrixXd> operations;
-  for (const auto& [i_zone, zone, kernel] : symmetric) {
-    if (!options_.antisymmetric) break;
-    const MatrixXd gram = zone.gram(values, values);
-    if (!(gram.trace() > 0)) continue;
-    auto fit = fit_antisymmetry(field.features, c, kernel, gram, field.earlier_kernel(c, i_zone));
-    if (!fit) continue;
-    learned.zones.push_back({i_zone, zone, std::move(fit->kernel)});
-    operations.push_back(std::move(fit->leave_one_out));
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (!fits[k]) continue;
+    learned.zones.push_back({symmetric[k].i_zone, symmetric[k].zone, std::move(fits[k]->kernel)});
+    operations.push_back(std::move(fits[k]->leave_one_out));
   }
   if (learned.zones.empty()) return learned.residuals = std::move(values), learned;
   Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
@@ -367,13 +371,13 @@ MatrixXd weights_without_own_fold(const model::SmootherKernel& kernel, const Mat
 
 /// With an earlier kernel: lengths, noise and trust are learned once, from all cases, and every fold's
 /// smoother follows from them in closed form. What those few numbers know of a fold is far below its scatter.
-MatrixF KernelMethod::cross_predict_at_once(FieldParts field, const field::FieldData& data,
-                                            const Folds& folds, const FitContext& context) const {
+MatrixF KernelMethod::predict_at_once(FieldParts field, const field::FieldData& data, const Folds& folds,
+                                      std::span<const std::size_t> wanted, const FitContext& context) const {
   const auto cases = rows_without(folds, folds.size());
-  std::vector<std::vector<Index>> places;  // of each fold's rows in `cases`
-  for (const auto& fold : folds) {
+  std::vector<std::vector<Index>> places;  // of each wanted fold's rows in `cases`
+  for (const auto k : wanted) {
     auto& own = places.emplace_back();
-    for (const auto row : fold) own.push_back(std::ranges::lower_bound(cases, row) - cases.begin());
+    for (const auto row : folds[k]) own.push_back(std::ranges::lower_bound(cases, row) - cases.begin());
   }
   const auto n = static_cast<Index>(cases.size());
   MatrixF found(n, field.symmetric.cols());
@@ -392,9 +396,11 @@ MatrixF KernelMethod::cross_predict_at_once(FieldParts field, const field::Field
     });
   });
   MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());
-  for (Index i = 0; i < n; ++i)
-    predictions.row(static_cast<Index>(cases[static_cast<std::size_t>(i)])) =
-        found.row(i) * static_cast<float>(field.scales[i]);
+  for (const auto& own : places) {
+    for (const Index i : own)
+      predictions.row(static_cast<Index>(cases[static_cast<std::size_t>(i)])) =
+          found.row(i) * static_cast<float>(field.scales[i]);
+  }
   return predictions;
 }
 

@@ -155,6 +155,7 @@ NetworkPlan NetworksMethod::plan(const field::FieldData& data, std::span<const s
             .records = &records,
             .band = band,
             .settings = own.search,
+            .epoch_records = own.epoch_records,
             .activation = own.activation,
             .trainer = trainer_.get(),
             .seed = context.seed.derive("search").derive(field).derive(band.name)};
@@ -192,7 +193,7 @@ std::vector<model::Submodel> NetworksMethod::build(const field::FieldData& data,
             .records = &records.planned(),
             .band = band,
             .hyperparameters = plan.hyperparameters[i_band],
-            .budget = {own.fit.max_epochs, own.fit.patience},
+            .budget = {own.fit.max_epochs, own.fit.patience, own.epoch_records},
             .trainer = trainer_.get(),
             .seed = context.seed.derive("fit").derive(field).derive(band.name).derive(i_build)};
         auto result = train(stage, context);
@@ -241,8 +242,8 @@ std::unique_ptr<model::FieldModel> NetworksMethod::fit(const field::FieldData& d
   return assemble(data, records.all.get(), std::move(submodels));
 }
 
-MatrixF NetworksMethod::cross_predict(const field::FieldData& data, const Folds& folds,
-                                      const FitContext& context) const {
+MatrixF NetworksMethod::predict_folds(const field::FieldData& data, const Folds& folds,
+                                      std::span<const std::size_t> wanted, const FitContext& context) const {
   const auto rows = rows_of(folds);
   auto known = context.warm == nullptr ? rows : context.warm->known_among(rows);
   if (known.empty()) known = rows;
@@ -251,22 +252,23 @@ MatrixF NetworksMethod::cross_predict(const field::FieldData& data, const Folds&
   const auto found = plan(data, known, cold);
   MatrixF predicted = MatrixF::Zero(data.values.rows(), data.values.cols());
   std::atomic<std::int64_t> done{0};
-  const auto total = static_cast<std::int64_t>(folds.size());
+  const auto total = static_cast<std::int64_t>(wanted.size());
   const auto own = settings_of(data);
   const int n_builds = std::min(own.fit.builds, cross_builds);
-  const int within_fold = std::max(1, context.n_trainings() / static_cast<int>(folds.size()));
+  const int within_fold = std::max(1, context.n_trainings() / static_cast<int>(wanted.size()));
   base::parallel_for(
-      folds.size(), context.n_trainings(),
-      [&](std::size_t i_fold, int) {
+      wanted.size(), context.n_trainings(),
+      [&](std::size_t i, int) {
+        const std::size_t i_fold = wanted[i];
         const Records records(data, common(known, rows_without(folds, i_fold)), own, cold);
         auto submodels = build(data, found, records, n_builds, cold, within_fold);
         const auto model = assemble(data, records.all.get(), std::move(submodels));
         model::Workspace workspace;
         for (const auto row : folds[i_fold]) {
-          const auto i = static_cast<Eigen::Index>(row);
-          const std::span inputs(data.cases->inputs.row(i).data(), data.cases->schema.size());
+          const auto place = static_cast<Eigen::Index>(row);
+          const std::span inputs(data.cases->inputs.row(place).data(), data.cases->schema.size());
           predict_case(*model, inputs, data.cases->mesh.n_planes,
-                       {predicted.row(i).data(), static_cast<std::size_t>(predicted.cols())}, workspace);
+                       {predicted.row(place).data(), static_cast<std::size_t>(predicted.cols())}, workspace);
         }
         context.log->progress({"cross-validate networks, " + data.info.name, ++done, total, "folds"});
       },

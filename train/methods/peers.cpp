@@ -47,9 +47,10 @@ class Peer : public Method {
   [[nodiscard]] std::string key(const std::string&) const override {
     return base::digest_of_members(name_, options_);
   }
-  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
+  [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const Folds& folds,
+                                      std::span<const std::size_t> wanted,
                                       const FitContext& context) const override {
-    return cross_predict_by_fitting(*this, data, folds, context, true);
+    return predict_by_fitting(*this, data, folds, wanted, context, true);
   }
 
  protected:

@@ -131,9 +131,10 @@ class PodMlp final : public Method {
         data.cases->mesh.n_columns, std::make_shared<model::MlpCoefficients>(std::move(built.parts)));
   }
 
-  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
+  [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const Folds& folds,
+                                      std::span<const std::size_t> wanted,
                                       const FitContext& context) const override {
-    return cross_predict_by_fitting(*this, data, folds, context, true);
+    return predict_by_fitting(*this, data, folds, wanted, context, true);
   }
 
  private:

@@ -119,12 +119,13 @@ ColumnNetwork initial_network(base::Seed seed, std::size_t i_build, std::size_t 
 }
 
 std::vector<std::uint32_t> epoch_order(base::Seed seed, std::size_t i_build, std::size_t i_epoch,
-                                       const std::vector<std::uint32_t>& train_rows) {
-  std::vector<std::uint32_t> order(train_rows.size());
+                                       std::size_t n_train, int most_records) {
+  const auto part = epoch_part(n_train, most_records, i_epoch);
+  std::vector<std::uint32_t> order(n_train);
   std::iota(order.begin(), order.end(), std::uint32_t{0});
-  base::Random random(seed.derive("order").derive(i_build).derive(i_epoch));
-  random.shuffle(order);
-  return order;
+  base::Random(seed.derive("order").derive(i_build).derive(part.sweep)).shuffle(order);
+  const auto first = order.begin() + static_cast<std::ptrdiff_t>(part.first);
+  return {first, first + static_cast<std::ptrdiff_t>(part.size)};
 }
 
 ScreeningResult screen_networks(const ScreeningData& data, const ScreenSettings& settings,

@@ -103,9 +103,11 @@ class Crew {
   void train(const std::stop_token& stop) {
     for (int epoch = 0; epoch < tables_.settings.max_epochs && !groups_.empty(); ++epoch) {
       if (stop.stop_requested()) throw Interrupted("stopped on request");
-      const auto order = epoch_order(tables_.seed, i_build_, static_cast<std::size_t>(epoch), tables_.train);
+      const auto order = epoch_order(tables_.seed, i_build_, static_cast<std::size_t>(epoch),
+                                     tables_.train.size(), tables_.settings.epoch_records);
       gather_inputs(order);
-      for (auto& group : groups_) train_epoch(group, order, static_cast<std::size_t>(epoch));
+      for (auto& group : groups_) train_epoch(group, order);
+      n_steps_ += (order.size() + batch_ - 1) / batch_;
       for (auto& group : groups_) judge_epoch(group);
       compact();
     }
@@ -172,7 +174,7 @@ class Crew {
     }
   }
 
-  void train_epoch(Group& group, const std::vector<std::uint32_t>& order, std::size_t epoch) {
+  void train_epoch(Group& group, const std::vector<std::uint32_t>& order) {
     const auto& shape = tables_.shape;
     const std::size_t batch_rows = (batch_ + tile - 1) / tile * tile;
     const std::size_t n_batches = (order.size() + batch_ - 1) / batch_;
@@ -184,8 +186,7 @@ class Crew {
       loss_gradient(group, std::span(order).subspan(first, n), n_rows);
       lanes_backward(shape, group.parameters, x, n_rows, scratch_.activations.data(), scratch_.error.data(),
                      scratch_.gradient);
-      group.adam.step(group.parameters, scratch_.gradient, tables_.settings.learning_rate,
-                      epoch * n_batches + b + 1);
+      group.adam.step(group.parameters, scratch_.gradient, tables_.settings.learning_rate, n_steps_ + b + 1);
     }
   }
 
@@ -286,7 +287,7 @@ class Crew {
   }
 
   const ScreeningTables& tables_;
-  std::size_t i_build_, batch_;
+  std::size_t i_build_, batch_, n_steps_ = 0;
   std::vector<Learner> learners_;
   std::vector<Group> groups_;
   std::vector<float> epoch_inputs_;

@@ -56,6 +56,7 @@ FieldSettings settings_of_field(const Settings& settings, const std::string& fie
           .search = read_by_the_search(settings.search),
           .activation = model::activation_of(settings.networks.activation),
           .fit = settings.fit,
+          .epoch_records = settings.networks.epoch_records,
           .average = settings.networks.average && settings.symmetry.enabled};
 }
 
@@ -73,7 +74,7 @@ io::TensorFile ScreenStage::compute(const StageContext& context) const {
 
 io::TensorFile SearchStage::compute(const StageContext& context) const {
   const auto problem = make_problem(records->get().records, band);
-  const TrainingBudget budget{settings.max_epochs, settings.patience};
+  const TrainingBudget budget{settings.max_epochs, settings.patience, epoch_records};
   const SearchContext search_context{.name = field + ", " + band.name,
                                      .digest = io::stage_key(*this),
                                      .seed = seed,

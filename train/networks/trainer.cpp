@@ -1,5 +1,7 @@
 #include "elrom/networks/trainer.hpp"
 
+#include <algorithm>
+
 namespace elrom::networks {
 
 MatrixF parameters_of(const model::Network& network) {
@@ -12,6 +14,14 @@ MatrixF parameters_of(const model::Network& network) {
   }
   return Eigen::Map<const MatrixF>(values.data(), values.empty() ? 0 : 1,
                                    static_cast<Eigen::Index>(values.size()));
+}
+
+EpochPart epoch_part(std::size_t n_records, int most_records, std::size_t epoch) {
+  const std::size_t most = most_records > 0 ? static_cast<std::size_t>(most_records) : n_records;
+  const std::size_t n_parts =
+      std::max<std::size_t>(1, (n_records + most - 1) / std::max<std::size_t>(1, most));
+  const std::size_t part = epoch % n_parts, first = part * n_records / n_parts;
+  return {epoch / n_parts, first, (part + 1) * n_records / n_parts - first};
 }
 
 void tell_divergence(const TrainingResult& result, const std::string& network, Log& log) {

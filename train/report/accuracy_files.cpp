@@ -78,8 +78,10 @@ Json field_node(const AccuracyReport& report, const FieldAccuracy& field) {
   }
   Json candidates = Json::array();
   for (const auto& candidate : field.choice.candidates)
-    candidates.push_back(
-        {{"method", candidate.name}, {"nrmse", number(candidate.nrmse)}, {"weight", candidate.weight}});
+    candidates.push_back({{"method", candidate.name},
+                          {"nrmse", number(candidate.nrmse)},
+                          {"weight", candidate.weight},
+                          {"left_after", candidate.left_after}});
   node["choice"] = {{"nrmse", number(field.choice.nrmse)},
                     {"nrmse_by_band", number(field.choice.nrmse_by_band)},
                     {"scale", field.choice.scale.empty() ? Json() : Json(field.choice.scale)},

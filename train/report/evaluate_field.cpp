@@ -154,8 +154,8 @@ Choice choice_of(const std::string& accuracy_json, const std::string& field) {
     return {{}, std::nan(""), std::nan(""), {}};
   Choice choice{{}, number(root[field], "nrmse"), number(root[field], "nrmse_by_band"), {}};
   for (const auto& candidate : root[field]["candidates"])
-    choice.candidates.push_back(
-        {candidate.value("name", ""), number(candidate, "nrmse"), candidate.value("weight", 0.0)});
+    choice.candidates.push_back({candidate.value("name", ""), number(candidate, "nrmse"),
+                                 candidate.value("weight", 0.0), candidate.value("left_after", 0)});
   return choice;
 }
 

@@ -93,7 +93,7 @@ void read_earlier_run(CostModel& model, const std::filesystem::path& folder) {
     model.networks = 1 + networks->second.processor_seconds / others;
 }
 
-/// Fits of one method a field: the model's, those of the contest, twice as many for the intervals.
+/// Fits of one method a field: the model's, those of the contest, up to twice as many for the intervals.
 double seconds_without_networks(const CostModel& model, int folds, bool with_peers) {
   const double side_by_side = std::min(model.n_threads, folds);
   const double fits = 1 + 3.0 * folds / std::max(1.0, side_by_side);

@@ -31,10 +31,11 @@ class Timed final : public methods::Method {
     const CostClock clock(cost_);
     return method_.fit(data, cases, context);
   }
-  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const methods::Folds& folds,
+  [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const methods::Folds& folds,
+                                      std::span<const std::size_t> wanted,
                                       const methods::FitContext& context) const override {
     const CostClock clock(cost_);
-    return method_.cross_predict(data, folds, context);
+    return method_.predict_folds(data, folds, wanted, context);
   }
   [[nodiscard]] const MethodCost& cost() const { return cost_; }
 
@@ -63,15 +64,18 @@ methods::AutoFit fit_alone(const ModelStage& stage, const methods::Method& metho
 }
 
 /// Truth minus prediction, each case by a model that never saw it but saw the loads around it, as intervals
-/// promise it: the folds that methods compete in leave gaps, which a new case need not meet. Twice as many of
-/// them, because a model that misses as many cases as those do errs more than the one that will answer.
+/// promise it: the folds that methods compete in leave gaps, which a new case need not meet. Of few cases
+/// twice as many folds, because a model that misses as many cases as those do errs more than the one that
+/// will answer.
 MatrixF residuals_of_new_cases(const ModelStage& stage, const std::vector<const methods::Method*>& methods,
                                const methods::AutoFit& fit, const std::vector<std::size_t>& rows,
                                const methods::FitContext& context) {
+  constexpr std::size_t many_cases = 128;
   const auto& data = *stage.data;
   const auto folds =
       methods::folds_of(rows, data.cases->loads, context, [&](std::span<const std::size_t> some) {
-        return methods::spread_folds(*data.cases, some, 2 * stage.n_folds);
+        return methods::spread_folds(*data.cases, some,
+                                     some.size() < many_cases ? 2 * stage.n_folds : stage.n_folds);
       });
   MatrixF residuals = data.values;
   const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);
@@ -107,6 +111,7 @@ Json accuracy_of(const ModelStage& stage, const methods::AutoFit& fit) {
                           {"nrmse", finite_or_null(candidate.nrmse)},
                           {"weight", candidate.mean_weight()}});
     if (!candidate.failure.empty()) candidates.back()["failure"] = candidate.failure;
+    if (candidate.left_after > 0) candidates.back()["left_after"] = candidate.left_after;
   }
   for (const auto& out : stage.left_out)
     candidates.push_back(

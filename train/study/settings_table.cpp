@@ -81,6 +81,9 @@ io::SettingsTable<Settings> make_table() {
       [](auto& s) -> auto& { return s.screen.n_units; }, 1, 1024);
   t.whole(
       "screen.batch_size", "records a step", [](auto& s) -> auto& { return s.screen.batch_size; }, 1, 65536);
+  t.whole(
+      "screen.epoch_records", "records of an epoch at most, 0: all; the next epoch goes on with the others",
+      [](auto& s) -> auto& { return s.screen.epoch_records; }, 0);
   t.real(
       "screen.learning_rate", "Adam's step", [](auto& s) -> auto& { return s.screen.learning_rate; }, 1e-7,
       1);
@@ -148,6 +151,9 @@ io::SettingsTable<Settings> make_table() {
          [](auto& s) -> auto& { return s.networks.activation; }, {"relu", "tanh", "silu"});
   t.word("networks.targets", "standardised by column (the source) or by cell",
          [](auto& s) -> auto& { return s.networks.targets; }, {"column", "cell"});
+  t.whole(
+      "networks.epoch_records", "records of an epoch at most, 0: all; the next epoch goes on with the others",
+      [](auto& s) -> auto& { return s.networks.epoch_records; }, 0);
   t.flag(
       "networks.mirrors", "train networks on mirror images too",
       [](auto& s) -> auto& { return s.networks.mirrors; });
@@ -168,7 +174,7 @@ io::SettingsTable<Settings> make_table() {
       [](auto& s) -> auto& { return s.peers.networks; });
   t.whole(
       "peers.folds",
-      "folds by load of auto's cross-validation; intervals are scored on twice as many, spread ones",
+      "folds by load of auto's cross-validation; intervals are scored on spread ones, twice as many below 128 cases",
       [](auto& s) -> auto& { return s.peers.folds; }, 2, 1000);
   return t;
 }

@@ -130,16 +130,22 @@ double Training::evaluate() {
   return take_sum() / std::max(1.0, records.n_targets());
 }
 
-bool Training::run_epoch() {
-  // Streams by epoch: a resumed training needs no generator's state.
-  const auto epoch = static_cast<std::uint64_t>(progress_.epoch);
+std::span<const std::int64_t> Training::next_records(int most_records) {
+  // Streams by sweep: a resumed training needs no generator's state.
+  const auto part =
+      networks::epoch_part(order_.size(), most_records, static_cast<std::size_t>(progress_.epoch));
   std::iota(order_.begin(), order_.end(), 0);
-  base::Random(seed_.derive("order").derive(epoch)).shuffle(order_);
-  dropout_random_ = base::Random(seed_.derive("dropout").derive(epoch));
+  base::Random(seed_.derive("order").derive(part.sweep)).shuffle(order_);
+  return std::span(order_).subspan(part.first, part.size);
+}
+
+bool Training::run_epoch(int most_records) {
+  const auto records = next_records(most_records);
+  dropout_random_ = base::Random(seed_.derive("dropout").derive(static_cast<std::uint64_t>(progress_.epoch)));
   const auto batch = static_cast<std::size_t>(hyperparameters_.batch_size);
-  for (std::size_t first = 0; first < order_.size(); first += batch)
-    step(std::span(order_).subspan(first, std::min(batch, order_.size() - first)));
-  const double train_mse = take_sum() / std::max(1.0, train_.n_targets());
+  for (std::size_t first = 0; first < records.size(); first += batch)
+    step(records.subspan(first, std::min(batch, records.size() - first)));
+  const double train_mse = take_sum() / std::max(1.0, train_.n_targets(records));
   const double validation_mse = evaluate();
   ++progress_.epoch;
   progress_.history.push_back(validation_mse);

@@ -27,10 +27,9 @@ class Training {
   Training(const networks::TrainingProblem& problem, const networks::Hyperparameters& hyperparameters,
            base::Seed seed, Place place);
 
-  /// One sweep over the training records in the epoch's own random
-  /// order, then an evaluation; keeps the best weights.
-  /// @return false when a loss was not finite
-  bool run_epoch();
+  /// Some training records (TrainingBudget::epoch_records) in a random order, every sweep over all of them in
+  /// its own, then an evaluation; keeps the best weights. @return false when a loss was not finite
+  bool run_epoch(int most_records = 0);
   /// Back to the first weights, the problem's or the seed's, at another rate.
   void restart(double learning_rate);
   /// One step on the records `rows`; also what bench-step times.
@@ -44,6 +43,8 @@ class Training {
 
  private:
   [[nodiscard]] Pass& pass_of(std::int64_t n_rows);
+  /// The records of the epoch that comes next.
+  [[nodiscard]] std::span<const std::int64_t> next_records(int most_records);
   void residual(Pass& pass, double scale);
   [[nodiscard]] double take_sum();
 

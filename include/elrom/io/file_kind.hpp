@@ -36,7 +36,7 @@ inline constexpr FileKind stage{"elrom-stage", {1, 0}, "remove it"};
 inline constexpr FileKind checkpoint{"elrom-checkpoint", {1, 0}, "remove it"};
 inline constexpr FileKind versions{"elrom-versions", {1, 0}, "use a copy of it"};
 inline constexpr FileKind retrain{"elrom-retrain", {1, 1}, "retrain again with elrom-train retrain"};
-inline constexpr FileKind accuracy{"elrom-accuracy", {1, 3}, "report again with elrom-report accuracy"};
+inline constexpr FileKind accuracy{"elrom-accuracy", {1, 4}, "report again with elrom-report accuracy"};
 inline constexpr FileKind comparison{"elrom-comparison", {1, 0}, "compare again with elrom-report compare"};
 inline constexpr FileKind learning_curve{
     "elrom-learning-curve", {1, 2}, "draw it again with elrom-report learning-curve"};

@@ -41,9 +41,10 @@ namespace elrom::methods {
 void predict_case(const model::FieldModel& model, std::span<const double> inputs, std::size_t n_planes,
                   std::span<float> values, model::Workspace& workspace);
 
-/// Fits `method` once a fold; `parallel` runs folds side by side
+/// Method::predict_folds by one fit for each fold that is wanted; `parallel` runs them side by side
 /// (for methods whose fit() may run on several threads).
-[[nodiscard]] MatrixF cross_predict_by_fitting(const Method& method, const field::FieldData& data,
-                                               const Folds& folds, const FitContext& context, bool parallel);
+[[nodiscard]] MatrixF predict_by_fitting(const Method& method, const field::FieldData& data,
+                                         const Folds& folds, std::span<const std::size_t> wanted,
+                                         const FitContext& context, bool parallel);
 
 }  // namespace elrom::methods

@@ -45,8 +45,13 @@ class Method {
                                                                std::span<const std::size_t> cases,
                                                                const FitContext& context) const = 0;
   /// Predictions for every case in `folds` by models that did not see its fold, (n_cases, n_cells) with rows
-  /// of cases in no fold left zero. The default fits once a fold; methods with a closed form override it.
-  [[nodiscard]] virtual MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
+  /// of cases in no fold left zero.
+  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
+                                      const FitContext& context) const;
+  /// The same for the cases in the folds of these numbers; the other folds are only learned from. The default
+  /// fits once a fold; methods with a closed form override it.
+  [[nodiscard]] virtual MatrixF predict_folds(const field::FieldData& data, const Folds& folds,
+                                              std::span<const std::size_t> wanted,
                                               const FitContext& context) const;
 };
 

@@ -40,7 +40,8 @@ class NetworksMethod final : public Method {
                                                        const FitContext& context) const override;
   /// Bands and hyperparameters are those of all cases in the folds; the networks of a fold have not seen its
   /// cases. At most two builds a band.
-  [[nodiscard]] MatrixF cross_predict(const field::FieldData& data, const Folds& folds,
+  [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const Folds& folds,
+                                      std::span<const std::size_t> wanted,
                                       const FitContext& context) const override;
 
   /// The stages before the fit; each from the cache where it is valid.

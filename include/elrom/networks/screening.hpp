@@ -92,10 +92,10 @@ struct ColumnNetwork {
 /// linear layers.
 [[nodiscard]] ColumnNetwork initial_network(base::Seed seed, std::size_t i_build, std::size_t i_column,
                                             std::size_t n_inputs, std::size_t n_units);
-/// Order in which one epoch of a build visits its training records; batches are consecutive pieces, the last
-/// one short.
+/// Training records that one epoch of a build visits, in their order; batches are consecutive pieces, the
+/// last one short. @param most_records ScreenSettings::epoch_records
 [[nodiscard]] std::vector<std::uint32_t> epoch_order(base::Seed seed, std::size_t i_build,
-                                                     std::size_t i_epoch,
-                                                     const std::vector<std::uint32_t>& train_rows);
+                                                     std::size_t i_epoch, std::size_t n_train,
+                                                     int most_records);
 
 }  // namespace elrom::networks

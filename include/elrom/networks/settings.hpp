@@ -30,6 +30,7 @@ struct ScreenSettings {
   int builds = 5;
   int n_units = 16;
   int batch_size = 64;
+  int epoch_records = 4096;  ///< of one epoch at most; 0: all
   double learning_rate = 4e-3;
   int max_epochs = 60;
   int patience = 6;
@@ -69,6 +70,7 @@ struct NetworkSettings {
   std::string plane_encoding = "fourier";  ///< "index" (the source) | "fourier" | "one_hot"
   std::string activation = "relu";
   std::string targets = "column";  ///< "column" (eq. 6.1) | "cell": mean and scale of every cell on its own
+  int epoch_records = 12288;       ///< of one epoch at most, about what 64 cases have; 0: all
   bool mirrors = true;   ///< train on mirror images too: about 10 % less error, four times the records
   bool average = false;  ///< average the answers for a case and its mirror images
   std::string relevance = "gp";  ///< inputs scaled by "gp": length scales | "linear": a ridge fit | "none"

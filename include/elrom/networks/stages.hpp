@@ -33,6 +33,7 @@ struct FieldSettings {
   SearchSettings search;
   model::Activation activation = model::Activation::relu;
   FitSettings fit;
+  int epoch_records = 0;
   bool average = false;
 };
 /// What a stage would not read (the closed-form screen's settings beside
@@ -58,6 +59,7 @@ struct SearchStage {
   const RecordSource* records;
   Band band;
   SearchSettings settings;
+  int epoch_records;
   model::Activation activation;
   const Trainer* trainer;
   base::Seed seed;

@@ -18,7 +18,18 @@ namespace elrom::networks {
 struct TrainingBudget {
   int max_epochs = 200;
   int patience = 20;  ///< epochs without a better validation error before stopping
+  /// Training records of one epoch at most, 0: all of them. The next epoch goes on where it ended, so that
+  /// none is left out: records that are many need no more steps than few do.
+  int epoch_records = 0;
 };
+
+/// The records that one epoch visits: a piece of a sweep over all of them in the sweep's own random order.
+struct EpochPart {
+  std::size_t sweep = 0, first = 0, size = 0;
+};
+/// Epoch by epoch (from 0) through sweeps that are cut into as few pieces as hold at most so many records.
+/// @param most_records TrainingBudget::epoch_records
+[[nodiscard]] EpochPart epoch_part(std::size_t n_records, int most_records, std::size_t epoch);
 
 /// Standardised records. With a mask only the masked-in targets count: mask(record's plane, output).
 struct TrainingProblem {

@@ -76,8 +76,9 @@ struct SubmodelScore {
 struct Choice {
   struct Candidate {
     std::string name;
-    double nrmse = 0;   ///< NaN: it failed
-    double weight = 0;  ///< in the model
+    double nrmse = 0;    ///< NaN: it failed
+    double weight = 0;   ///< in the model
+    int left_after = 0;  ///< folds, as nothing could gain by it; 0: it was tried in all
   };
   std::vector<Candidate> candidates;  ///< empty: not known
   double nrmse = 0;                   ///< of what was chosen; NaN: not known
