@@ -111,6 +111,7 @@ class Contest {
         } else {
           standing_.push_back(scores_.size());
           errors_.push_back(std::move(tried.errors));
+          sum_products();
           blend_ = blend_so_far();
         }
       } catch (const NumericalError& error) {
@@ -121,15 +122,13 @@ class Contest {
       scores_.push_back(std::move(score));
     }
     if (errors_.empty()) std::rethrow_exception(first);
-    sum_products();
     errors_.clear();
   }
 
   /// Weights of the final model, and its cross-validated error: the best candidate, moved towards a blend and
   /// then towards a blend for each band of columns as far as those gain.
   [[nodiscard]] AutoFit decide() const {
-    MatrixD total = products_.front();
-    for (std::size_t k = 1; k < products_.size(); ++k) total += products_[k];
+    const MatrixD total = products_of_all_folds();
     const MatrixXd gram = gram_of(total);
 
     // What is chosen or fitted by the errors that it is judged by is flattered: the other folds choose.
@@ -228,19 +227,9 @@ class Contest {
 
   /// Errors of the best blend of the candidates that stand, (n_cases, n_cells).
   [[nodiscard]] MatrixF blend_so_far() const {
-    const auto n = static_cast<Index>(errors_.size());
-    MatrixXd gram = MatrixXd::Zero(n, n);
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j <= i; ++j) {
-        const MatrixF &a = errors_[static_cast<std::size_t>(i)], &b = errors_[static_cast<std::size_t>(j)];
-        for (Index row = 0; row < a.rows(); ++row)
-          gram(i, j) += a.row(row).cast<double>().dot(b.row(row).cast<double>());
-        gram(j, i) = gram(i, j);
-      }
-    }
-    const VectorXd weights = weights_of(gram);
+    const VectorXd weights = weights_of(gram_of(products_of_all_folds()));
     MatrixF blend = MatrixF::Zero(errors_.front().rows(), errors_.front().cols());
-    for (Index i = 0; i < n; ++i)
+    for (Index i = 0; i < weights.size(); ++i)
       if (weights[i] > 0) blend += static_cast<float>(weights[i]) * errors_[static_cast<std::size_t>(i)];
     return blend;
   }
@@ -303,6 +292,11 @@ class Contest {
     }
   }
 
+  [[nodiscard]] MatrixD products_of_all_folds() const {
+    MatrixD total = products_.front();
+    for (std::size_t k = 1; k < products_.size(); ++k) total += products_[k];
+    return total;
+  }
   [[nodiscard]] MatrixXd gram_of(const MatrixD& products) const {
     return VectorXd(products.rowwise().sum()).reshaped(n_standing(), n_standing());
   }
@@ -368,7 +362,7 @@ class Contest {
   VectorXd variation_;                // of each column
   std::vector<CandidateScore> scores_;
   std::vector<std::size_t> standing_;  // places in scores_ of the n that were tried in all folds
-  std::vector<MatrixF> errors_;        // of those n, until their products are summed
+  std::vector<MatrixF> errors_;        // of those n, until all have been tried
   MatrixF blend_;                      // errors of their best blend
   std::vector<MatrixD> products_;      // of each fold
 };

@@ -245,7 +245,8 @@ std::string choice_section(const AccuracyReport& report) {
   const auto lead = fmt::format(
       "NRMSE on training cases that the fit left out, in groups of neighbouring cases; held-out cases were "
       "not looked at. The dot marks what answers; ~ what left after some groups, which had shown that no blend "
-      "could gain by it: the best one's error, times its own over the best one's in those groups. A blend is taken as far as it gains, wholly where it is "
+      "could gain by it: the best one's error, times its own over the best one's in those groups. A blend is "
+      "taken as far as it gains, wholly where it is "
       "{0:g} % better than its best member, and weights of each band of columns' own in the same way (-: all "
       "columns lie in one band). The last column says what the field's magnitude was found to grow as (-: "
       "nothing).",

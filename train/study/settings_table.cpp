@@ -174,7 +174,8 @@ io::SettingsTable<Settings> make_table() {
       [](auto& s) -> auto& { return s.peers.networks; });
   t.whole(
       "peers.folds",
-      "folds by load of auto's cross-validation; intervals are scored on spread ones, twice as many below 128 cases",
+      "folds by load of auto's cross-validation; intervals are scored on spread ones, twice as many below 128 "
+      "cases",
       [](auto& s) -> auto& { return s.peers.folds; }, 2, 1000);
   return t;
 }
