@@ -7,22 +7,25 @@
 
 namespace elrom::math {
 
-MatrixF cosine_matrix(std::size_t n) {
+MatrixF cosine_matrix(std::size_t n, Beyond beyond) {
+  const double half = beyond == Beyond::negative ? 0.5 : 0;
   const auto size = static_cast<Eigen::Index>(n);
   MatrixF c(size, size);
   for (Eigen::Index k = 0; k < size; ++k) {
-    const double scale = std::sqrt((k == 0 ? 1.0 : 2.0) / static_cast<double>(n));
+    const double wave = static_cast<double>(k) + half;
+    const double scale = std::sqrt((wave == 0 ? 1.0 : 2.0) / static_cast<double>(n));
     for (Eigen::Index i = 0; i < size; ++i) {
-      const double angle =
-          std::numbers::pi * (static_cast<double>(i) + 0.5) * static_cast<double>(k) / static_cast<double>(n);
+      const double angle = std::numbers::pi * (static_cast<double>(i) + 0.5) * wave / static_cast<double>(n);
       c(k, i) = static_cast<float>(scale * std::cos(angle));
     }
   }
   return c;
 }
 
-CosineTransform::CosineTransform(std::array<std::size_t, 3> sizes)
-    : sizes_(sizes), matrices_{cosine_matrix(sizes[0]), cosine_matrix(sizes[1]), cosine_matrix(sizes[2])} {}
+CosineTransform::CosineTransform(std::array<std::size_t, 3> sizes, std::array<Beyond, 3> beyond)
+    : sizes_(sizes) {
+  for (std::size_t axis = 0; axis < 3; ++axis) matrices_[axis] = cosine_matrix(sizes[axis], beyond[axis]);
+}
 
 namespace {
 

@@ -9,14 +9,18 @@
 namespace elrom::methods {
 namespace {
 
+FundamentalDomain domain_of(const field::CaseSet& cases) {
+  return {cases, {}, symmetry_classes(cases.mirrors.size())};
+}
+
 /// 66 planes of 2 cells, as high as the furnace of design.
-field::CaseSet tall() { return {.mesh = field::make_furnace_mesh({}, 1, 2, 66)}; }
+FundamentalDomain tall() { return domain_of({.mesh = field::make_furnace_mesh({}, 1, 2, 66)}); }
 
 TEST(Zones, WeightsAddUpToOneOnEveryPlane) {
-  const field::CaseSet cases = tall();
+  const FundamentalDomain domain = tall();
   for (const std::size_t n : {2U, 3U, 5U}) {
     MatrixF sum = MatrixF::Zero(1, 132);
-    for (const Zone& zone : zones_of(cases, n)) zone.add(sum, MatrixF::Ones(1, zone.weights.size()));
+    for (const Zone& zone : zones_of(domain, n)) zone.add(sum, MatrixF::Ones(1, zone.weights.size()));
     EXPECT_TRUE(sum.isOnes(1e-6F)) << n << " zones";
   }
 }
@@ -35,7 +39,7 @@ TEST(Zones, NeighboursFadeIntoEachOtherHalfwayBetweenTheirMiddles) {
 }
 
 TEST(Zones, FewPlanesAreOneZone) {
-  const auto zones = zones_of({.mesh = field::make_furnace_mesh({}, 4, 6, 5)}, 3);
+  const auto zones = zones_of(domain_of({.mesh = field::make_furnace_mesh({}, 4, 6, 5)}), 3);
 
   ASSERT_EQ(zones.size(), 1U);
   EXPECT_EQ(zones[0].n_planes, 5U);
@@ -44,16 +48,16 @@ TEST(Zones, FewPlanesAreOneZone) {
 
 TEST(Zones, AMirrorThatExchangesPlanesLeavesOneZone) {
   field::CaseSet cases = test::toy_cases(2);
-  ASSERT_EQ(zones_of(cases, 3).size(), 3U);
+  ASSERT_EQ(zones_of(domain_of(cases), 3).size(), 3U);
   cases.mirrors.push_back(cases.mirrors.front());
   std::ranges::reverse(cases.mirrors.back().cell_from);  // upside down
 
-  EXPECT_EQ(zones_of(cases, 3).size(), 1U);
+  EXPECT_EQ(zones_of(domain_of(cases), 3).size(), 1U);
 }
 
 TEST(Zones, ProductsAreWeightedByCell) {
-  const field::CaseSet cases = tall();
-  const Zone zone = zones_of(cases, 3)[1];
+  const FundamentalDomain domain = tall();
+  const Zone zone = zones_of(domain, 3)[1];
   const MatrixF a = MatrixF::Random(3, 132), b = MatrixF::Random(2, 132);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 2);
   for (Eigen::Index c = 0; c < zone.weights.size(); ++c)

@@ -46,9 +46,8 @@ VectorXd variation_of_columns(const field::FieldData& data, std::span<const std:
 /// A member with less costs more to evaluate than it gives.
 constexpr double negligible = 0.1;
 
-/// What may still be is within so many standard errors of the cases. Cases of a fold share a model, so they
-/// tell less than as many independent ones would: hence three and not two.
-constexpr double chance = 3;
+/// What may still be is within so many standard errors of the cases, in every band of columns at once.
+constexpr double chance = 2;
 constexpr std::size_t fewest_cases = 24;  ///< that a candidate is judged by
 
 /// Numbers of the folds of each round: the middle one, then every third, then the rest.

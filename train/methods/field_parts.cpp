@@ -12,6 +12,7 @@
 #include "field_scale.hpp"
 #include "leave_one_out.hpp"
 #include "smoother_modes.hpp"
+#include "zones.hpp"
 
 namespace elrom::methods {
 
@@ -76,7 +77,8 @@ Trial trial(KernelFeatures of, const MatrixXd& gram, math::Covariance covariance
 FieldParts::FieldParts(const field::FieldData& data, std::span<const std::size_t> cases,
                        const FitContext& context, bool scaled)
     : classes(symmetry_classes(data.cases->mirrors.size())),
-      symmetric(project(data, cases, classes.front(), context.n_threads)),
+      domain(*data.cases, data.info.parity, classes),
+      symmetric(domain.project(data.values, cases, 0, context.n_threads)),
       mean(math::row_mean(symmetric, math::all_rows(cases.size()), context.n_threads)),
       scales(VectorXd::Ones(symmetric.rows())) {
   for (Index i = 0; i < symmetric.rows(); ++i) symmetric.row(i) -= mean.transpose().cast<float>();
@@ -84,7 +86,7 @@ FieldParts::FieldParts(const field::FieldData& data, std::span<const std::size_t
   features = features_of(*data.cases, cases, classes, names_of(smoother));
   if (smoother != nullptr && features.same_as(smoother->features())) earlier = smoother;
   if (nothing_to_learn()) return;
-  const MatrixXd gram = zones_of(*data.cases, 1).front().gram(symmetric, symmetric);
+  const MatrixXd gram = zones_of(domain, 1).front().gram(symmetric, symmetric);
   if (earlier_kernel(0, 0) == nullptr) {
     earlier = nullptr;
     choose(*data.cases, cases, gram);
@@ -94,9 +96,15 @@ FieldParts::FieldParts(const field::FieldData& data, std::span<const std::size_t
 
 MatrixF FieldParts::part(const field::FieldData& data, std::span<const std::size_t> cases, std::size_t c,
                          int n_threads) const {
-  MatrixF part = project(data, cases, classes[c], n_threads);
+  MatrixF part = domain.project(data.values, cases, c, n_threads);
   if (scale) part = scales.cwiseInverse().cast<float>().asDiagonal() * part;
   return part;
+}
+
+VectorXd FieldParts::whole_mean() const {
+  MatrixF whole = MatrixF::Zero(1, static_cast<Index>(domain.n_all_cells()));
+  domain.add(0, mean.transpose().cast<float>(), whole, 1);
+  return whole.row(0).transpose().cast<double>();
 }
 
 std::unique_ptr<model::FieldModel> FieldParts::with_scale(std::unique_ptr<model::FieldModel> model) const {

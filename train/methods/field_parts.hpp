@@ -1,6 +1,6 @@
 #pragma once
 // What the kernel method learns a field from: its symmetry classes, the derived inputs, and the symmetric
-// part's first kernel, with its covariance and the forms of its inputs chosen. Internal to study.
+// part's first kernel, with its covariance and the forms of its inputs chosen. Internal to methods.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -12,8 +12,8 @@
 #include "elrom/math/kernel.hpp"
 #include "elrom/math/standardiser.hpp"
 #include "elrom/model/smoother_coefficients.hpp"
+#include "fundamental_domain.hpp"
 #include "symmetry_classes.hpp"
-#include "zones.hpp"
 
 namespace elrom::methods {
 
@@ -43,6 +43,7 @@ struct KernelFeatures {
 /// Every class of a field over its scale, with what all of them are learned from.
 struct FieldParts {
   std::vector<SymmetryClass> classes;
+  FundamentalDomain domain;             // whose cells are meant by n_cells
   MatrixF symmetric;                    // departures of the symmetric class from its mean, (n_cases, n_cells)
   Eigen::VectorXd mean;                 // (n_cells)
   Eigen::VectorXd scales;               // of the cases, (n_cases)
@@ -65,6 +66,8 @@ struct FieldParts {
   /// One class of the cases, (n_cases, n_cells). @param cases those of the constructor
   [[nodiscard]] MatrixF part(const field::FieldData& data, std::span<const std::size_t> cases, std::size_t c,
                              int n_threads) const;
+  /// The mean in all cells of the field.
+  [[nodiscard]] Eigen::VectorXd whole_mean() const;
   /// The model of the field from that of the field over its scale.
   [[nodiscard]] std::unique_ptr<model::FieldModel> with_scale(std::unique_ptr<model::FieldModel> model) const;
 

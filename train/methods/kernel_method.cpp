@@ -33,7 +33,7 @@ using Eigen::VectorXd;
 struct ZonePart {
   std::vector<model::SmootherCoefficients::Group> groups;
   Zone zone;
-  MatrixF modes;  // weighted, (n_modes, n_cells of the zone)
+  MatrixF modes;  // weighted, (n_modes, cells of the zone in the domain)
   std::size_t i_class = 0;
   std::vector<double> left_out_variance;  // of each mode, mean over cases of the variance when left out
   [[nodiscard]] bool empty() const { return modes.rows() == 0; }
@@ -89,11 +89,9 @@ class KernelMethod final : public Method {
   template <class Take>
   void learn(FieldParts& field, const field::FieldData& data, std::span<const std::size_t> cases,
              const FitContext& context, const Take& take) const;
-  [[nodiscard]] Learned learn_symmetric(MatrixF centred, const FieldParts& field,
-                                        const field::FieldData& data, int n_threads) const;
+  [[nodiscard]] Learned learn_symmetric(MatrixF centred, const FieldParts& field, int n_threads) const;
   [[nodiscard]] Learned learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
-                                            const std::vector<ZoneKernel>& symmetric,
-                                            const field::FieldData& data, int n_threads) const;
+                                            const std::vector<ZoneKernel>& symmetric, int n_threads) const;
   /// Energy that the modes which are left out of one zone may hold.
   [[nodiscard]] double droppable(const MatrixF& residuals, std::size_t n_zones) const {
     return options_.dropped * math::sum_of_squares(residuals) / static_cast<double>(n_zones);
@@ -133,15 +131,14 @@ ZonePart make_part(const ZoneKernel& of, const MatrixF& shrunk, const MatrixD& z
   return part;
 }
 
-Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, const field::FieldData& data,
-                                      int n_threads) const {
+Learned KernelMethod::learn_symmetric(MatrixF centred, const FieldParts& field, int n_threads) const {
   const auto n = static_cast<double>(centred.rows());
   const auto used = field.features.of_class(0);
   const MatrixD& z = field.features.z;
   Learned learned;
-  for (const Zone& zone : zones_of(*data.cases, options_.zones))
+  for (const Zone& zone : zones_of(field.domain, options_.zones))
     learned.zones.push_back({learned.zones.size(), zone, field.start(learned.zones.size())});
-  Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
+  Shrinkage shrinkage(options_.shrink ? field.domain.box(0) : std::nullopt);
   // Deviations of a left-out case are taken from the mean of the others: y_i n / (n - 1) on centred cases.
   const MatrixF truth = centred * static_cast<float>(n / (n - 1));
   const int passes = std::max(options_.passes, 1);
@@ -201,8 +198,7 @@ std::optional<AntisymmetricFit> fit_antisymmetry(const KernelFeatures& features,
 }
 
 Learned KernelMethod::learn_antisymmetric(MatrixF values, std::size_t c, const FieldParts& field,
-                                          const std::vector<ZoneKernel>& symmetric,
-                                          const field::FieldData& data, int n_threads) const {
+                                          const std::vector<ZoneKernel>& symmetric, int n_threads) const {
   std::vector<std::optional<AntisymmetricFit>> fits(options_.antisymmetric ? symmetric.size() : 0);
   base::parallel_for(fits.size(), n_threads, [&](std::size_t k, int) {
     const auto& [i_zone, zone, kernel] = symmetric[k];
@@ -218,7 +214,7 @@ Learned KernelMethod::learn_antisymmetric(MatrixF values, std::size_t c, const F
     operations.push_back(std::move(fits[k]->leave_one_out));
   }
   if (learned.zones.empty()) return learned.residuals = std::move(values), learned;
-  Shrinkage shrinkage(options_.shrink ? box_of(data.cases->mesh) : std::nullopt);
+  Shrinkage shrinkage(options_.shrink ? field.domain.box(c) : std::nullopt);
   MatrixF predicted = over_zones(learned.zones, values, [&](const ZoneKernel& one) -> const MatrixXd& {
     return operations[static_cast<std::size_t>(&one - learned.zones.data())];
   });
@@ -232,29 +228,14 @@ Learned KernelMethod::learn_antisymmetric(MatrixF values, std::size_t c, const F
 template <class Take>
 void KernelMethod::learn(FieldParts& field, const field::FieldData& data, std::span<const std::size_t> cases,
                          const FitContext& context, const Take& take) const {
-  auto symmetric = learn_symmetric(std::move(field.symmetric), field, data, context.n_threads);
+  auto symmetric = learn_symmetric(std::move(field.symmetric), field, context.n_threads);
   const auto zones = symmetric.zones;
   take(std::size_t{0}, std::move(symmetric));
   for (std::size_t c = 1; c < field.classes.size(); ++c) {
     if (context.stop.stop_requested()) throw Interrupted("kernel: stopped");
-    take(c, learn_antisymmetric(field.part(data, cases, c, context.n_threads), c, field, zones, data,
+    take(c, learn_antisymmetric(field.part(data, cases, c, context.n_threads), c, field, zones,
                                 context.n_threads));
   }
-}
-
-/// Per cell: root of the mean squared residual, less what the coefficients' own variance will add again.
-VectorXd residual_deviation(const MatrixF& residuals, const std::vector<ZonePart>& parts) {
-  VectorXd variance = VectorXd::Zero(residuals.cols());
-  for (Index i = 0; i < residuals.rows(); ++i)
-    variance += residuals.row(i).transpose().cast<double>().cwiseAbs2();
-  variance /= static_cast<double>(residuals.rows());
-  for (const ZonePart& part : parts) {
-    for (Index m = 0; m < part.modes.rows(); ++m)
-      variance.segment(part.zone.first_cell, part.modes.cols()) -=
-          part.modes.row(m).transpose().cast<double>().cwiseAbs2() *
-          part.left_out_variance[static_cast<std::size_t>(m)];
-  }
-  return variance.cwiseMax(0).cwiseSqrt();
 }
 
 /// Nothing varies, or nothing that varies is known: the mean alone, as one mode of zeros.
@@ -268,25 +249,41 @@ std::unique_ptr<model::FieldModel> mean_model(const field::FieldData& data, cons
                                data.cases->mesh.n_columns, std::move(none));
 }
 
-/// The modes of all parts, and what they are of.
+/// The modes of all parts in all cells of the field, and what they are of.
 struct AllModes {
   MatrixF modes;  // (n_modes, n_cells)
   std::vector<std::int32_t> class_of;
   std::vector<model::ModePlanes> planes_of;
+  std::vector<double> left_out_variance;
 };
 
-AllModes together(const std::vector<ZonePart>& parts, Index n_cells) {
+AllModes together(const std::vector<ZonePart>& parts, const FundamentalDomain& domain, int n_threads) {
   Index n = 0;
   for (const ZonePart& part : parts) n += part.modes.rows();
-  AllModes all{MatrixF::Zero(n, n_cells), {}, {}};
+  AllModes all{MatrixF::Zero(n, static_cast<Index>(domain.n_all_cells())), {}, {}, {}};
   n = 0;
   for (const ZonePart& part : parts) {
-    all.modes.block(n, part.zone.first_cell, part.modes.rows(), part.modes.cols()) = part.modes;
-    n += part.modes.rows();
+    MatrixF own = MatrixF::Zero(part.modes.rows(), static_cast<Index>(domain.n_cells()));
+    own.middleCols(part.zone.first_cell, part.modes.cols()) = part.modes;
+    domain.add(part.i_class, own, all.modes.middleRows(n, own.rows()), n_threads);
+    n += own.rows();
     all.class_of.resize(static_cast<std::size_t>(n), static_cast<std::int32_t>(part.i_class));
     all.planes_of.resize(static_cast<std::size_t>(n), {part.zone.first_plane, part.zone.n_planes});
+    std::ranges::copy(part.left_out_variance, std::back_inserter(all.left_out_variance));
   }
   return all;
+}
+
+/// Per cell: root of the mean squared residual, less what the coefficients' own variance will add again.
+VectorXd residual_deviation(const MatrixF& residuals, const AllModes& all) {
+  VectorXd variance = VectorXd::Zero(residuals.cols());
+  for (Index i = 0; i < residuals.rows(); ++i)
+    variance += residuals.row(i).transpose().cast<double>().cwiseAbs2();
+  variance /= static_cast<double>(residuals.rows());
+  for (Index m = 0; m < all.modes.rows(); ++m)
+    variance -= all.modes.row(m).transpose().cast<double>().cwiseAbs2() *
+                all.left_out_variance[static_cast<std::size_t>(m)];
+  return variance.cwiseMax(0).cwiseSqrt();
 }
 
 std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& data,
@@ -294,40 +291,33 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
                                                      const FitContext& context) const {
   FieldParts field(data, cases, context, options_.scale);
   if (field.nothing_to_learn())
-    return mean_model(data, field.mean, math::column_moments(data.values, cases).deviation);
+    return mean_model(data, field.whole_mean(), math::column_moments(data.values, cases).deviation);
 
   if (field.scale) context.log->detail("kernel: " + data.info.name + " is learned over " + field.scale->name);
   std::vector<ZonePart> parts;
-  MatrixF residuals;
+  MatrixF residuals = MatrixF::Zero(static_cast<Index>(cases.size()), data.values.cols());
   double may_drop = 0;
-  learn(field, data, cases, context, [&](std::size_t c, Learned learned) {
-    if (c == 0)
-      residuals = std::move(learned.residuals);
-    else
-      residuals += learned.residuals;
-    if (c == 0) may_drop = droppable(residuals, learned.zones.size());
+  learn(field, data, cases, context, [&](std::size_t c, const Learned& learned) {
+    field.domain.add(c, learned.residuals, residuals, context.n_threads);
+    if (c == 0) may_drop = droppable(learned.residuals, learned.zones.size());
     for (const ZoneKernel& one : learned.zones) {
       auto part = make_part(one, learned.shrunk, field.features.z, limits_of(c, may_drop), context.n_threads);
       part.i_class = c;
       if (!part.empty()) parts.push_back(std::move(part));
     }
   });
-  const VectorXd residual = residual_deviation(residuals, parts);
+  AllModes all = together(parts, field.domain, context.n_threads);
+  const VectorXd residual = residual_deviation(residuals, all);
   if (parts.empty() || parts.front().i_class > 0)
-    return field.with_scale(mean_model(data, field.mean, residual));
+    return field.with_scale(mean_model(data, field.whole_mean(), residual));
 
-  const AllModes all = together(parts, data.values.cols());
-  std::vector<std::vector<int>> signs;
-  for (const SymmetryClass& one : field.classes) signs.push_back(one.signs);
-  const field::Mesh& mesh = data.cases->mesh;
-  model::SymmetryFold fold(data.cases->mirrors, data.info.parity, signs, mesh.n_planes, mesh.n_columns);
   std::vector<model::SmootherCoefficients::Group> groups;
   for (ZonePart& part : parts) std::ranges::move(part.groups, std::back_inserter(groups));
   auto coefficients = std::make_shared<model::SmootherCoefficients>(
       field.features.derived.map, field.features.scaler, field.features.z, std::move(groups));
-  return field.with_scale(model::make_pod_model("kernel", field.mean, all.modes, residual, mesh.n_columns,
-                                                std::move(coefficients), std::move(fold), all.class_of,
-                                                all.planes_of));
+  return field.with_scale(model::make_pod_model("kernel", field.whole_mean(), all.modes, residual,
+                                                data.cases->mesh.n_columns, std::move(coefficients),
+                                                field.domain.fold(), std::move(all.class_of), all.planes_of));
 }
 
 /// Each column less its mean.
@@ -380,20 +370,23 @@ MatrixF KernelMethod::predict_at_once(FieldParts field, const field::FieldData& 
     for (const auto row : folds[k]) own.push_back(std::ranges::lower_bound(cases, row) - cases.begin());
   }
   const auto n = static_cast<Index>(cases.size());
-  MatrixF found(n, field.symmetric.cols());
+  MatrixF means = MatrixF::Zero(n, field.symmetric.cols());
   for (const auto& own : places) {  // the mean of the others; that of all is 0 here
     const Eigen::RowVectorXf others = field.symmetric(own, Eigen::all).colwise().sum() /
                                       -static_cast<float>(n - static_cast<Index>(own.size()));
-    for (const Index i : own) found.row(i) = field.mean.transpose().cast<float>() + others;
+    for (const Index i : own) means.row(i) = field.mean.transpose().cast<float>() + others;
   }
+  MatrixF found = MatrixF::Zero(n, data.values.cols());
+  field.domain.add(0, means, found, context.n_threads);
   double may_drop = 0;
   learn(field, data, cases, context, [&](std::size_t c, const Learned& learned) {
     if (c == 0) may_drop = droppable(learned.residuals, learned.zones.size());
-    found += over_zones(learned.zones, learned.shrunk, [&](const ZoneKernel& one) {
+    const MatrixF departures = over_zones(learned.zones, learned.shrunk, [&](const ZoneKernel& one) {
       const MatrixXd gram = one.zone.gram(learned.shrunk, learned.shrunk);
       return weights_without_own_fold(one.kernel, gram, field.features.z, places, limits_of(c, may_drop),
                                       context.n_threads);
     });
+    field.domain.add(c, departures, found, context.n_threads);
   });
   MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());
   for (const auto& own : places) {

@@ -124,11 +124,9 @@ VectorXd logs(Index n, double repeated, std::initializer_list<double> rest) {
   return values;
 }
 
-constexpr math::MinimiseOptions search{
-    .max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6, .value_tolerance = 1e-8};
+constexpr math::MinimiseOptions search{.max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6};
 /// From a kernel of nearly the same cases: what more steps would gain is far below the scatter of the cases.
-constexpr math::MinimiseOptions search_nearby{
-    .max_iterations = 15, .memory = 10, .gradient_tolerance = 1e-5, .value_tolerance = 1e-6};
+constexpr math::MinimiseOptions search_nearby{.max_iterations = 15, .memory = 10, .gradient_tolerance = 1e-5};
 
 /// The least of what searches from each of `starts` find: a smooth field's error has several valleys.
 math::Minimum least(const math::Objective& objective, std::span<const VectorXd> starts, const Bounds& bounds,
@@ -207,16 +205,19 @@ double leave_one_out_error(const MatrixXd& covariance, double noise, const Matri
   const math::Cholesky factor(k);
   if (!factor.succeeded()) return std::numeric_limits<double>::infinity();
   const MatrixXd p = factor.inverse();
-  const MatrixXd q = p * gram * p;
+  const MatrixXd pg = p * gram;
+  const VectorXd squares = pg.cwiseProduct(p).rowwise().sum();  // diagonal of P G P
   const VectorXd weight = p.diagonal().array().square().inverse();
   if (slope != nullptr) {
-    // From dP = -P dK P: dJ/dK = M P + (M P)^T with M = P diag(Q_ii / P_ii^3) - Q W, W = diag(1 / P_ii^2).
-    const VectorXd cubic = q.diagonal().array() * weight.array() / p.diagonal().array();
-    const MatrixXd m = p * cubic.asDiagonal() - q * weight.asDiagonal();
-    const MatrixXd mp = m * p;
-    *slope = mp + mp.transpose();
+    // From dP = -P dK P: dJ/dK = P (2 C - G P W - W P G) P, C = diag(squares_i / P_ii^3), W = diag(weight).
+    MatrixXd inner = -(weight.asDiagonal() * pg);
+    inner += inner.transpose().eval();
+    inner.diagonal().array() += 2 * squares.array() * weight.array() / p.diagonal().array();
+    slope->resize(p.rows(), p.cols());
+    slope->triangularView<Eigen::Lower>() = MatrixXd(p * inner) * p;
+    slope->triangularView<Eigen::StrictlyUpper>() = slope->transpose();
   }
-  return q.diagonal().dot(weight);
+  return squares.dot(weight);
 }
 
 double significance(const VectorXd& gains) {

@@ -13,13 +13,21 @@ namespace {
 /// 0, 1, 2-3 as one band would be too coarse at the long end: index i falls into band floor(log2(i + 1)).
 std::size_t octave(std::size_t i) { return static_cast<std::size_t>(std::bit_width(i + 1)) - 1; }
 
+/// Of the whole axis of which this one may be half.
+std::size_t whole_size(const Box& box, std::size_t axis) {
+  return box.mirrored[axis] ? 2 * box.sizes[axis] : box.sizes[axis];
+}
+std::size_t whole_index(const Box& box, std::size_t axis, std::size_t k) {
+  return !box.mirrored[axis] ? k : box.beyond[axis] == math::Beyond::same ? 2 * k : 2 * k + 1;
+}
+
 std::span<float> row_span(MatrixF& m, std::size_t i) {
   return {m.row(static_cast<Eigen::Index>(i)).data(), static_cast<std::size_t>(m.cols())};
 }
 
 }  // namespace
 
-std::optional<std::array<std::size_t, 3>> box_of(const field::Mesh& mesh) {
+std::optional<Box> box_of(const field::Mesh& mesh) {
   if (static_cast<std::size_t>(mesh.centre.rows()) != mesh.n_cells() || mesh.n_columns == 0)
     return std::nullopt;
   const double extent = mesh.centre.col(1).maxCoeff() - mesh.centre.col(1).minCoeff();
@@ -31,19 +39,21 @@ std::optional<std::array<std::size_t, 3>> box_of(const field::Mesh& mesh) {
   for (std::size_t c = 0; c < mesh.n_columns; ++c) {
     if (!same(y(c), y(c / n_x * n_x))) return std::nullopt;
   }
-  return std::array{mesh.n_planes, mesh.n_columns / n_x, n_x};
+  return Box{{mesh.n_planes, mesh.n_columns / n_x, n_x}};
 }
 
-Shrinkage::Shrinkage(std::optional<std::array<std::size_t, 3>> box) {
+Shrinkage::Shrinkage(const std::optional<Box>& box) : box_(box) {
   if (!box) return;
-  transform_.emplace(*box);
-  const auto [n_z, n_y, n_x] = *box;
-  const std::size_t b_y = octave(n_y) + 1, b_x = octave(n_x) + 1;
-  n_bands_ = (octave(n_z) + 1) * b_y * b_x;
+  transform_.emplace(box->sizes, box->beyond);
+  const auto [n_z, n_y, n_x] = box->sizes;
+  const auto octaves = [&](std::size_t axis) { return octave(whole_size(*box, axis)) + 1; };
+  const auto octave_of = [&](std::size_t axis, std::size_t k) { return octave(whole_index(*box, axis, k)); };
+  n_bands_ = octaves(0) * octaves(1) * octaves(2);
   band_.reserve(n_z * n_y * n_x);
   for (std::size_t z = 0; z < n_z; ++z) {
     for (std::size_t y = 0; y < n_y; ++y) {
-      for (std::size_t x = 0; x < n_x; ++x) band_.push_back((octave(z) * b_y + octave(y)) * b_x + octave(x));
+      for (std::size_t x = 0; x < n_x; ++x)
+        band_.push_back((octave_of(0, z) * octaves(1) + octave_of(1, y)) * octaves(2) + octave_of(2, x));
     }
   }
 }
@@ -99,15 +109,14 @@ void Shrinkage::learn_cells(const MatrixF& deviations, const MatrixF& truth, dou
   // from freeboard, wide enough to average the noise.
   std::array<std::size_t, 3> half{};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    half[axis] = std::min<std::size_t>(transform_->sizes()[axis] / 12, 5);
-  const std::array<std::size_t, 3>& box = transform_->sizes();
+    half[axis] = std::min<std::size_t>(whole_size(*box_, axis) / 12, 5);
   const double cells = static_cast<double>((2 * half[0] + 1) * (2 * half[1] + 1) * (2 * half[2] + 1));
   const double trust = prior * square.mean() * cells + 1e-300;
-  cellwise_ =
-      ((window_sums(product, box, half).array() + trust) / (window_sums(square, box, half).array() + trust))
-          .cwiseMax(0)
-          .cwiseMin(1.2)
-          .cast<float>();
+  cellwise_ = ((window_sums(product, *box_, half).array() + trust) /
+               (window_sums(square, *box_, half).array() + trust))
+                  .cwiseMax(0)
+                  .cwiseMin(1.2)
+                  .cast<float>();
 }
 
 void Shrinkage::scale_back(MatrixF& spectra, int n_threads) const {
@@ -123,21 +132,24 @@ void Shrinkage::apply_bands(MatrixF& deviations, int n_threads) const {
   scale_back(deviations, n_threads);
 }
 
-Eigen::VectorXd window_sums(const Eigen::VectorXd& values, const std::array<std::size_t, 3>& box,
+Eigen::VectorXd window_sums(const Eigen::VectorXd& values, const Box& box,
                             const std::array<std::size_t, 3>& half_widths) {
   Eigen::VectorXd now = values;
-  const std::array<std::size_t, 3> stride{box[1] * box[2], box[2], 1};
+  const std::array<std::size_t, 3> stride{box.sizes[1] * box.sizes[2], box.sizes[2], 1};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Eigen::VectorXd before = now;
-    const auto n = static_cast<std::ptrdiff_t>(box[axis]),
+    const auto n = static_cast<std::ptrdiff_t>(box.sizes[axis]),
                half = static_cast<std::ptrdiff_t>(half_widths[axis]);
+    const auto inside = [&](std::ptrdiff_t at) {
+      if (box.mirrored[axis] && at >= n) at = 2 * n - 1 - at;
+      return std::clamp<std::ptrdiff_t>(at, 0, n - 1);
+    };
     for (std::size_t c = 0; c < static_cast<std::size_t>(values.size()); ++c) {
-      const auto at = static_cast<std::ptrdiff_t>(c / stride[axis] % box[axis]);
+      const auto at = static_cast<std::ptrdiff_t>(c / stride[axis] % box.sizes[axis]);
       double sum = 0;
-      for (std::ptrdiff_t d = -half; d <= half; ++d) {
-        const std::ptrdiff_t shift = std::clamp<std::ptrdiff_t>(at + d, 0, n - 1) - at;
-        sum += before[static_cast<std::ptrdiff_t>(c) + shift * static_cast<std::ptrdiff_t>(stride[axis])];
-      }
+      for (std::ptrdiff_t d = -half; d <= half; ++d)
+        sum += before[static_cast<std::ptrdiff_t>(c) +
+                      (inside(at + d) - at) * static_cast<std::ptrdiff_t>(stride[axis])];
       now[static_cast<Eigen::Index>(c)] = sum;
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 // How far predicted deviations from the mean are trusted, wavelength by wavelength and cell by cell: the
-// factors that make leave-one-out predictions fit best (an empirical Wiener filter). Internal to study.
+// factors that make leave-one-out predictions fit best (an empirical Wiener filter). Internal to methods.
 
 #include <array>
 #include <optional>
@@ -11,14 +11,20 @@
 
 namespace elrom::methods {
 
-/// Cells of the mesh as a box (planes, rows, cells of a row),
-/// when its columns lie in rows of equal y; else nothing.
-[[nodiscard]] std::optional<std::array<std::size_t, 3>> box_of(const field::Mesh& mesh);
+/// Cells in planes, rows and cells of a row. An axis with a mirror behind its last cell is half of a whole.
+struct Box {
+  std::array<std::size_t, 3> sizes;
+  std::array<bool, 3> mirrored = {};
+  std::array<math::Beyond, 3> beyond = {};  ///< what the mirror makes of the values
+};
+
+/// Cells of the mesh as a box, when its columns lie in rows of equal y; else nothing.
+[[nodiscard]] std::optional<Box> box_of(const field::Mesh& mesh);
 
 class Shrinkage {
  public:
   /// Without a box every factor is 1.
-  explicit Shrinkage(std::optional<std::array<std::size_t, 3>> box);
+  explicit Shrinkage(const std::optional<Box>& box);
 
   struct Options {
     bool spectral = true;  ///< factors by wavelength band before those by cell
@@ -36,6 +42,7 @@ class Shrinkage {
   void apply_bands(MatrixF& deviations, int n_threads) const;
   void scale_back(MatrixF& spectra, int n_threads) const;  ///< coefficients by their factors, then to cells
 
+  std::optional<Box> box_;
   std::optional<math::CosineTransform> transform_;
   std::vector<std::size_t> band_;  //!< of each coefficient, (n_cells)
   std::size_t n_bands_ = 0;
@@ -43,10 +50,9 @@ class Shrinkage {
   Eigen::VectorXf cellwise_;  //!< factor of each cell, (n_cells); empty: all 1
 };
 
-/// Sums over a window of cells around each cell, at the border with the border's value repeated. (n_cells) in
-/// and out.
-[[nodiscard]] Eigen::VectorXd window_sums(const Eigen::VectorXd& values,
-                                          const std::array<std::size_t, 3>& box,
+/// Sums over a window of cells around each cell, at the border with the border's value repeated, at a mirror
+/// with what is seen in it. (n_cells) in and out.
+[[nodiscard]] Eigen::VectorXd window_sums(const Eigen::VectorXd& values, const Box& box,
                                           const std::array<std::size_t, 3>& half_widths);
 
 }  // namespace elrom::methods

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "elrom/base/parallel.hpp"
-
 namespace elrom::methods {
 
 bool SymmetryClass::symmetric() const {
@@ -25,24 +23,6 @@ std::vector<SymmetryClass> symmetry_classes(std::size_t n_mirrors) {
     classes = std::move(longer);
   }
   return classes;
-}
-
-MatrixF project(const field::FieldData& data, std::span<const std::size_t> rows,
-                const SymmetryClass& symmetry, int n_threads) {
-  const auto& mirrors = data.cases->mirrors;
-  MatrixF projected(static_cast<Eigen::Index>(rows.size()), data.values.cols());
-  base::parallel_for(rows.size(), n_threads, [&](std::size_t i, int) {
-    auto row = projected.row(static_cast<Eigen::Index>(i));
-    row = data.values.row(static_cast<Eigen::Index>(rows[i]));
-    for (std::size_t k = 0; k < mirrors.size(); ++k) {
-      const Eigen::RowVectorXf before = row;
-      const auto sign = static_cast<float>(symmetry.signs[k] * mirrors[k].field_sign(data.info.parity));
-      for (Eigen::Index c = 0; c < row.size(); ++c) {
-        row[c] = 0.5F * (before[c] + sign * before[mirrors[k].cell_from[static_cast<std::size_t>(c)]]);
-      }
-    }
-  });
-  return projected;
 }
 
 model::LinearForm project_input(const field::CaseSet& cases, std::size_t input,

@@ -19,13 +19,8 @@ struct SymmetryClass {
 /// All combinations of signs, the symmetric one first.
 [[nodiscard]] std::vector<SymmetryClass> symmetry_classes(std::size_t n_mirrors);
 
-/// Projections of the given rows on a class, product over mirrors of (1 + sign * M) / 2; (rows.size(),
-/// n_cells). The classes' projections add up to the rows, and are orthogonal to each other.
-[[nodiscard]] MatrixF project(const field::FieldData& data, std::span<const std::size_t> rows,
-                              const SymmetryClass& symmetry, int n_threads);
-
-/// The same projection of one input, as a linear form; all weights are zero when the class has no part in
-/// that input.
+/// Projection of one input on a class, product over mirrors of (1 + sign * M) / 2, as a linear form; all
+/// weights are zero when the class has no part in that input.
 [[nodiscard]] model::LinearForm project_input(const field::CaseSet& cases, std::size_t input,
                                               const SymmetryClass& symmetry);
 

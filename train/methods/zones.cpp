@@ -16,12 +16,6 @@ double weight_of(std::size_t plane, double middle, double reach) {
   return std::clamp(0.5 - beyond / fading, 0.0, 1.0);
 }
 
-bool keeps_planes(const field::Mirror& mirror, std::size_t n_columns) {
-  for (std::size_t c = 0; c < mirror.cell_from.size(); ++c)
-    if (static_cast<std::size_t>(mirror.cell_from[c]) / n_columns != c / n_columns) return false;
-  return true;
-}
-
 }  // namespace
 
 Eigen::MatrixXd Zone::gram(const MatrixF& a, const MatrixF& b) const {
@@ -45,22 +39,21 @@ void Zone::add(MatrixF& sum, const MatrixF& predicted) const {
   sum.middleCols(first_cell, weights.size()) += predicted * weights.asDiagonal();
 }
 
-std::vector<Zone> zones_of(const field::CaseSet& cases, std::size_t n_zones) {
-  const field::Mesh& mesh = cases.mesh;
-  const auto n_columns = static_cast<Eigen::Index>(mesh.n_columns);
-  const auto keeps = [&](const field::Mirror& mirror) { return keeps_planes(mirror, mesh.n_columns); };
-  if (n_zones < 2 || mesh.n_planes < 2 * n_zones || !std::ranges::all_of(cases.mirrors, keeps)) {
-    const auto n_cells = static_cast<Eigen::Index>(mesh.n_cells());
-    return {{.n_planes = mesh.n_planes, .weights = Eigen::RowVectorXf::Ones(n_cells)}};
+std::vector<Zone> zones_of(const FundamentalDomain& domain, std::size_t n_zones) {
+  const std::size_t n_planes = domain.n_planes();
+  const auto n_columns = static_cast<Eigen::Index>(domain.n_columns());
+  if (n_zones < 2 || n_planes < 2 * n_zones || !domain.keeps_planes()) {
+    const auto n_cells = static_cast<Eigen::Index>(domain.n_cells());
+    return {{.n_planes = n_planes, .weights = Eigen::RowVectorXf::Ones(n_cells)}};
   }
-  const double reach = static_cast<double>(mesh.n_planes - 1) / static_cast<double>(n_zones - 1);
+  const double reach = static_cast<double>(n_planes - 1) / static_cast<double>(n_zones - 1);
   std::vector<Zone> zones(n_zones);
   for (std::size_t k = 0; k < n_zones; ++k) {
     Zone& zone = zones[k];
     const double middle = static_cast<double>(k) * reach;
     while (weight_of(zone.first_plane, middle, reach) == 0) ++zone.first_plane;
     std::size_t end = zone.first_plane;
-    while (end < mesh.n_planes && weight_of(end, middle, reach) > 0) ++end;
+    while (end < n_planes && weight_of(end, middle, reach) > 0) ++end;
     zone.n_planes = end - zone.first_plane;
     zone.first_cell = static_cast<Eigen::Index>(zone.first_plane) * n_columns;
     zone.weights.resize(static_cast<Eigen::Index>(zone.n_planes) * n_columns);

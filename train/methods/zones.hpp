@@ -1,13 +1,13 @@
 #pragma once
 // Zones of height. A furnace is one thing at its bottom and another at its top: what inputs do to a field
 // changes with height, and one smoother for all heights is right nowhere. Each zone has its own, and zones
-// fade into each other, so no seam is seen. Internal to study.
+// fade into each other, so no seam is seen. Internal to methods.
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "elrom/field/case_set.hpp"
 #include "elrom/math/matrix.hpp"
+#include "fundamental_domain.hpp"
 
 namespace elrom::methods {
 
@@ -29,6 +29,6 @@ struct Zone {
 /// Zones with their middles at equal distances from the first plane to the last, so those at the ends are
 /// half as high; on every plane the weights add up to 1. Where zones would have less than two planes each, or
 /// a mirror takes cells to other planes, one zone that is everything.
-[[nodiscard]] std::vector<Zone> zones_of(const field::CaseSet& cases, std::size_t n_zones);
+[[nodiscard]] std::vector<Zone> zones_of(const FundamentalDomain& domain, std::size_t n_zones);
 
 }  // namespace elrom::methods

@@ -39,7 +39,7 @@ struct Candidate {
 /// Fitted on all cases of the data. Read the file as a FieldStage.
 struct ModelStage {
   static constexpr const char* stage = "model";
-  static constexpr int version = 3;
+  static constexpr int version = 4;
   std::string name;                   ///< "auto", "pod_gp" ...
   std::vector<Candidate> candidates;  ///< one, or for "auto" those it chooses among
   const field::FieldData* data;

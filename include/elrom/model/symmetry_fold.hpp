@@ -25,6 +25,8 @@ class SymmetryFold {
   [[nodiscard]] bool empty() const { return orbit_.empty(); }
   [[nodiscard]] std::size_t n_columns() const { return orbit_.size(); }
   [[nodiscard]] std::size_t n_orbits() const { return n_orbits_; }
+  /// The column that each orbit is stored for, ascending, (n_orbits).
+  [[nodiscard]] std::span<const std::int32_t> stored_columns() const { return first_; }
   [[nodiscard]] std::size_t n_classes() const { return sign_.size() == 0 ? 0 : sign_.shape()[0]; }
 
   /// The stored column of each orbit, out of a mode's plane.
