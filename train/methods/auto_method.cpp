@@ -14,6 +14,7 @@
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/model/composite_models.hpp"
 #include "elrom/networks/banding.hpp"
+#include "race.hpp"
 
 namespace elrom::methods {
 
@@ -43,21 +44,6 @@ VectorXd variation_of_columns(const field::FieldData& data, std::span<const std:
   return sums * static_cast<double>(cases.size());
 }
 
-/// A member with less costs more to evaluate than it gives.
-constexpr double negligible = 0.1;
-
-/// What may still be is within so many standard errors of the cases, in every band of columns at once.
-constexpr double chance = 2;
-constexpr std::size_t fewest_cases = 24;  ///< that a candidate is judged by
-
-/// Numbers of the folds of each round: the middle one, then every third, then the rest.
-std::vector<std::vector<std::size_t>> rounds_of(std::size_t n_folds) {
-  std::vector<std::vector<std::size_t>> rounds(3);
-  for (std::size_t k = 0; k < n_folds; ++k) rounds[k == n_folds / 2 ? 0 : k % 3 == 1 ? 1 : 2].push_back(k);
-  std::erase_if(rounds, [](const auto& round) { return round.empty(); });
-  return rounds;
-}
-
 /// Weights that minimise w^T G w for sum w = 1 over the chosen members, without the sign condition.
 VectorXd unconstrained(const MatrixXd& gram, const std::vector<Index>& members) {
   const auto n = static_cast<Index>(members.size());
@@ -73,7 +59,7 @@ VectorXd unconstrained(const MatrixXd& gram, const std::vector<Index>& members) 
 
 /// Without the members that have next to no weight.
 VectorXd without_negligible(const VectorXd& weights) {
-  const VectorXd kept = (weights.array() < negligible).select(0, weights);
+  const VectorXd kept = (weights.array() < negligible_weight).select(0, weights);
   return kept / kept.sum();
 }
 
@@ -169,7 +155,7 @@ class Contest {
     }
     for (const auto& round : rounds_of(folds_.size())) {
       try_in(method, round, tried, context);
-      if (!may_gain(tried)) break;
+      if (!may_gain(shown(tried), options_.full_gain)) break;
     }
     return tried;
   }
@@ -192,36 +178,23 @@ class Contest {
     return relative(math::sum_of_squares(best)) * std::sqrt(squares(tried.errors) / squares(best));
   }
 
-  /// Whether a candidate may move the answer. With weight w it lowers the squared error of a blend by
-  /// 2 w x - w^2 d.d, where x = -b.d, b are the blend's errors and d the candidate's less those; the best
-  /// weight is x / d.d. The gains of x as large as chance allows, in each band of columns that would give the
-  /// candidate more than a negligible weight, are together compared with the gain that moved() would follow
-  /// by no more than a negligible share.
-  [[nodiscard]] bool may_gain(const Tried& tried) const {
-    if (tried.rows.size() < fewest_cases) return true;
-    const auto n = static_cast<Index>(tried.rows.size());
-    MatrixXd x(n, variation_.size());
-    VectorXd departure = VectorXd::Zero(variation_.size());
-    double squares = 0;
+  /// A candidate beside the blend, in the cases that it was tried in.
+  [[nodiscard]] Shown shown(const Tried& tried) const {
+    const auto bands = bands_of(squares_in_columns(blend_));
+    const auto n = static_cast<Index>(tried.rows.size()), n_bands = std::ssize(bands);
+    Shown shown{MatrixXd(n, n_bands), VectorXd::Zero(n_bands), 0};
     for (Index i = 0; i < n; ++i) {
       const auto row = static_cast<Index>(tried.rows[static_cast<std::size_t>(i)]);
       const Eigen::RowVectorXf b = blend_.row(row), d = tried.errors.row(row) - b;
-      x.row(i) = -by_column(b.cwiseProduct(d));
-      departure += by_column(d.cwiseAbs2());
-      squares += static_cast<double>(b.squaredNorm());
+      const VectorXd gains = -by_column(b.cwiseProduct(d)), departures = by_column(d.cwiseAbs2());
+      for (Index k = 0; k < n_bands; ++k) {
+        const auto& columns = bands[static_cast<std::size_t>(k)];
+        shown.gains(i, k) = gains(columns).sum();
+        shown.departures[k] += departures(columns).sum();
+      }
+      shown.squares += static_cast<double>(b.squaredNorm());
     }
-    double gain = 0;
-    for (const auto& columns : bands_of(squares_in_columns(blend_))) {
-      math::RunningMoments moments;
-      for (const double of_case : VectorXd(x(Eigen::all, columns).rowwise().sum())) moments.add(of_case);
-      const auto count = static_cast<double>(n);
-      const double most = count * moments.mean() + chance * std::sqrt(count) * moments.deviation();
-      const double departed = departure(columns).sum();
-      if (!(most > negligible * departed)) continue;
-      const double weight = std::min(1.0, most / departed);
-      gain += weight * (2 * most - weight * departed);
-    }
-    return gain > 2 * negligible * options_.full_gain * squares;
+    return shown;
   }
 
   /// Errors of the best blend of the candidates that stand, (n_cases, n_cells).
@@ -374,7 +347,8 @@ double CandidateScore::mean_weight() const {
 
 std::vector<double> blend_weights(const MatrixXd& error_gram) {
   const Index n = error_gram.rows();
-  check(n > 0 && static_cast<double>(n) * negligible < 1, "blend_weights: few enough that one has weight");
+  check(n > 0 && static_cast<double>(n) * negligible_weight < 1,
+        "blend_weights: few enough that one has weight");
   std::vector<double> best;
   double least = std::numeric_limits<double>::infinity();
   for (unsigned set = 1; set < 1U << n; ++set) {
