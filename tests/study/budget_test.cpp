@@ -29,6 +29,13 @@ TEST(Budget, LevelsCostMoreOneAfterTheOther) {
   EXPECT_FALSE(levels.front().settings.peers.networks);
 }
 
+TEST(Budget, ManyCasesHaveAsManyFoldsForTheirIntervalsAsForTheContest) {
+  auto model = model_of(1);
+  model.n_cases = 128;
+
+  EXPECT_EQ(budget_levels({}, model)[1].seconds, 9 * (1 + 2.0 * 2 / 2));
+}
+
 TEST(Budget, WhatWasRuledOutStaysOut) {
   Settings settings;
   settings.peers.networks = false;

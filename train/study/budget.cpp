@@ -19,6 +19,7 @@
 #include "elrom/study/held_out.hpp"
 #include "elrom/study/study.hpp"
 #include "elrom/study/timing.hpp"
+#include "field_stage.hpp"
 
 namespace elrom::study {
 namespace {
@@ -26,8 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int fewest_folds = 2, some_folds = 4;
-constexpr double peers_beside =
-    1.25;  // a run with the simple peers, as a multiple of one with the kernel alone
+constexpr double peers_beside = 4;  // a run with the simple peers, as a multiple of one with the kernel alone
 constexpr double standard_networks = 5;  // effort "standard" as a multiple of "quick", of networks alone
 constexpr double margin = 0.85;          // share of the time that is planned with: other work comes and goes
 constexpr double hope = 2;    // of the cheapest that is left: what it makes is kept for a later run
@@ -57,8 +57,7 @@ class Deadline {
 
 /// The kernel's fit of one field on all training cases, on one thread.
 double calibrate(const field::SnapshotStore& store, const Settings& settings, const std::string& field,
-                 Log& log) {
-  const auto rows = hold_out(store, held_out_patterns(store, settings, log)).building;
+                 const std::vector<std::size_t>& rows, Log& log) {
   const auto cases = study_cases(store, settings, rows, log);
   const auto& fields = store.fields();
   const auto info = std::ranges::find(fields, field, &field::FieldInfo::name);
@@ -93,10 +92,12 @@ void read_earlier_run(CostModel& model, const std::filesystem::path& folder) {
     model.networks = 1 + networks->second.processor_seconds / others;
 }
 
-/// Fits of one method a field: the model's, those of the contest, up to twice as many for the intervals.
+/// Fits of one method a field: the model's, those of the contest and those of the intervals.
 double seconds_without_networks(const CostModel& model, int folds, bool with_peers) {
   const double side_by_side = std::min(model.n_threads, folds);
-  const double fits = 1 + 3.0 * folds / std::max(1.0, side_by_side);
+  const auto n_folds = static_cast<std::size_t>(folds);
+  const auto of_folds = static_cast<double>(n_folds + interval_folds(n_folds, model.n_cases));
+  const double fits = 1 + of_folds / std::max(1.0, side_by_side);
   return model.seconds_per_fit * static_cast<double>(model.n_fields) * fits * (with_peers ? peers_beside : 1);
 }
 
@@ -120,9 +121,10 @@ CostModel cost_model(const std::filesystem::path& folder, const Settings& settin
   const std::filesystem::path named(settings.store);
   const auto store = field::SnapshotStore::open(named.is_absolute() ? named : folder / named);
   const auto fields = field::choose_fields(store.fields(), settings.fields, "fields.names");
-  CostModel model{.n_fields = fields.size(), .n_threads = settings.n_threads()};
+  const auto rows = hold_out(store, held_out_patterns(store, settings, log)).building;
+  CostModel model{.n_fields = fields.size(), .n_cases = rows.size(), .n_threads = settings.n_threads()};
   read_earlier_run(model, folder);
-  model.seconds_per_fit = calibrate(store, settings, fields.front().name, log);
+  model.seconds_per_fit = calibrate(store, settings, fields.front().name, rows, log);
   return model;
 }
 

@@ -64,18 +64,14 @@ methods::AutoFit fit_alone(const ModelStage& stage, const methods::Method& metho
 }
 
 /// Truth minus prediction, each case by a model that never saw it but saw the loads around it, as intervals
-/// promise it: the folds that methods compete in leave gaps, which a new case need not meet. Of few cases
-/// twice as many folds, because a model that misses as many cases as those do errs more than the one that
-/// will answer.
+/// promise it: the folds that methods compete in leave gaps, which a new case need not meet.
 MatrixF residuals_of_new_cases(const ModelStage& stage, const std::vector<const methods::Method*>& methods,
                                const methods::AutoFit& fit, const std::vector<std::size_t>& rows,
                                const methods::FitContext& context) {
-  constexpr std::size_t many_cases = 128;
   const auto& data = *stage.data;
   const auto folds =
       methods::folds_of(rows, data.cases->loads, context, [&](std::span<const std::size_t> some) {
-        return methods::spread_folds(*data.cases, some,
-                                     some.size() < many_cases ? 2 * stage.n_folds : stage.n_folds);
+        return methods::spread_folds(*data.cases, some, interval_folds(stage.n_folds, some.size()));
       });
   MatrixF residuals = data.values;
   const auto n_columns = static_cast<Eigen::Index>(data.cases->mesh.n_columns);

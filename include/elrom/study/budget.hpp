@@ -31,10 +31,11 @@ struct BudgetLevel {
 struct CostModel {
   double seconds_per_fit = 0;  ///< of the kernel on one field, one thread, wall
   std::size_t n_fields = 0;
+  std::size_t n_cases = 0;  ///< that build
   int n_threads = 1;
   /// A run with networks at effort "quick", as a multiple of one without; of
   /// an earlier run of the study, else as on the shipped cases.
-  double networks = 5;
+  double networks = 3.5;
   bool networks_had_no_part = false;  ///< in the study's present model, which tried them
 };
 
