@@ -9,7 +9,7 @@ namespace elrom::methods {
 
 namespace {
 
-/// The part of a box whose columns, in their order, are `columns`: the corner at its first cell; else nothing.
+/// The corner of a box at its first cell whose columns, in their order, are these; else nothing.
 std::optional<Box> corner_of(const Box& whole, std::span<const std::int32_t> columns) {
   const std::size_t width = whole.sizes[2];
   std::size_t n_x = 0;

@@ -12,10 +12,10 @@
 
 namespace elrom::methods {
 
-/// Orbits of columns as large as can be, one column of each: sums over its cells are sums over all cells, but
-/// for one factor. All cells where there is no such domain: without mirrors, with one that exchanges planes or
-/// has columns on it, or where its columns are no corner of the mesh's box. Thread rule: const use from any
-/// thread.
+/// One column of each orbit, all orbits being equally large: sums over its cells are sums over all cells, but
+/// for one factor. All cells where there is no such domain: without mirrors, with one that exchanges planes
+/// or has columns on it, or where its columns are no corner of the mesh's box. Thread rule: const use from
+/// any thread.
 class FundamentalDomain {
  public:
   FundamentalDomain(const field::CaseSet& cases, field::Parity parity,

@@ -12,8 +12,8 @@ inline constexpr double negligible_weight = 0.1;
 /// Numbers of the folds of each round: the middle one, then every third, then the rest.
 [[nodiscard]] std::vector<std::vector<std::size_t>> rounds_of(std::size_t n_folds);
 
-/// A candidate beside the blend of those before it, by bands of columns: b are the blend's errors of one case,
-/// d the candidate's less those.
+/// A candidate beside the blend of those before it, by bands of columns: b are the blend's errors of one
+/// case, d the candidate's less those.
 struct Shown {
   Eigen::MatrixXd gains;       ///< -b.d, (n_cases, n_bands)
   Eigen::VectorXd departures;  ///< d.d, summed over the cases, (n_bands)

@@ -29,8 +29,8 @@ struct FieldStage {
   [[nodiscard]] const std::string& accuracy() const { return file.text("accuracy"); }
 };
 
-/// Folds of the models that intervals are scored by. Of few cases twice as many as methods compete in, because
-/// a model that misses as many cases as those do errs more than the one that will answer.
+/// Folds of the models that intervals are scored by. Of few cases twice as many as methods compete in,
+/// because a model that misses as many cases as those do errs more than the one that will answer.
 [[nodiscard]] constexpr std::size_t interval_folds(std::size_t n_folds, std::size_t n_cases) {
   return n_cases < 128 ? 2 * n_folds : n_folds;
 }
