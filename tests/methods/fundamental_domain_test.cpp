@@ -38,8 +38,8 @@ TEST_P(OfParity, ProjectionsAddUpAndAreOrthogonal) {
     EXPECT_EQ(part.cols(), 8 * 6);
     parts.push_back(whole(domain, c, part));
     sum += parts.back();
-    // Sums over the domain are a quarter of those over all cells.
-    EXPECT_TRUE((4 * part * part.transpose()).isApprox(parts[c] * parts[c].transpose(), 1e-4F)) << c;
+    // Sums over the domain are those over all cells.
+    EXPECT_TRUE((part * part.transpose()).isApprox(parts[c] * parts[c].transpose(), 1e-4F)) << c;
   }
 
   EXPECT_TRUE(sum.isApprox(data.values, 1e-6F));

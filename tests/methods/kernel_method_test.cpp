@@ -215,6 +215,24 @@ TEST_P(MirroredInputs, GiveTheMirroredField) {
   }
 }
 
+TEST(KernelMethod, ACaseThatIsTakenOutAndGivenBackChangesLittle) {
+  const field::CaseSet cases = test::toy_cases(20);
+  const field::FieldData data = test::toy_field(cases, 0.01);
+  const auto model = make_kernel_method()->fit(data, math::all_rows(20), {});
+  const std::vector<double> inputs(cases.inputs.row(0).begin(), cases.inputs.row(0).end());
+  const std::vector<float> values(data.values.row(0).begin(), data.values.row(0).end());
+
+  const auto without = model->without_case(0);
+  ASSERT_NE(without, nullptr);
+  const auto again = model::with_case(*without, inputs, values);
+
+  const auto of = [&](const model::FieldModel& one) {
+    const auto predicted = predict(one, cases, inputs);
+    return Eigen::VectorXf(Eigen::VectorXf::Map(predicted.data(), std::ssize(predicted)));
+  };
+  EXPECT_LT((of(*again) - of(*model)).norm(), 0.5F * (of(*without) - of(*model)).norm());
+}
+
 TEST(KernelMethod, LearnsTheAsymmetryThatInputsExplain) {
   const field::CaseSet cases = test::toy_cases(40);
   const field::FieldData data = test::toy_field(cases, 0.02);

@@ -1,6 +1,6 @@
 #pragma once
 // The derived inputs of the kernel method, from the schema's units and names and the declared mirrors;
-// internal to study.
+// internal to methods.
 
 #include <span>
 #include <vector>

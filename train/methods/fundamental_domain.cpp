@@ -1,8 +1,11 @@
 #include "fundamental_domain.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "elrom/base/error.hpp"
 #include "elrom/base/parallel.hpp"
 
 namespace elrom::methods {
@@ -80,6 +83,7 @@ void FundamentalDomain::take_domain(const field::CaseSet& cases) {
     box_ = corner;
   }
   columns_.assign(stored.begin(), stored.end());
+  root_ = std::sqrt(static_cast<float>(n_all_columns_ / columns_.size()));
   is_whole_ = false;
 }
 
@@ -93,29 +97,34 @@ std::optional<Box> FundamentalDomain::box(std::size_t i_class) const {
 MatrixF FundamentalDomain::project(const MatrixF& values, std::span<const std::size_t> rows,
                                    std::size_t i_class, int n_threads) const {
   const auto n = static_cast<Eigen::Index>(n_cells());
-  const float share = 1 / static_cast<float>(images_.size());
-  MatrixF projected = MatrixF::Zero(static_cast<Eigen::Index>(rows.size()), n);
+  const double share = root_ / static_cast<double>(images_.size());
+  MatrixF projected(static_cast<Eigen::Index>(rows.size()), n);
   base::parallel_for(rows.size(), n_threads, [&](std::size_t i, int) {
     const float* from = values.row(static_cast<Eigen::Index>(rows[i])).data();
-    float* to = projected.row(static_cast<Eigen::Index>(i)).data();
+    // In double the images of a class that vanishes cancel to the last bit.
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(n);
     for (std::size_t k = 0; k < images_.size(); ++k) {
-      const float weight = share * signs_[i_class][k];
+      const double weight = signs_[i_class][k];
       const std::int32_t* cells = images_[k].data();
-      for (Eigen::Index c = 0; c < n; ++c) to[c] += weight * from[cells[c]];
+      for (Eigen::Index c = 0; c < n; ++c) sum[c] += weight * from[cells[c]];
     }
+    projected.row(static_cast<Eigen::Index>(i)) = (share * sum).cast<float>();
   });
   return projected;
 }
 
 void FundamentalDomain::add(std::size_t i_class, const MatrixF& part, Eigen::Ref<MatrixF> cells,
                             int n_threads) const {
+  check(part.rows() == cells.rows() && part.cols() == static_cast<Eigen::Index>(n_cells()),
+        "fundamental domain: the same rows, and cells of the domain");
   if (is_whole_) {
     cells += part;
     return;
   }
   base::parallel_for(static_cast<std::size_t>(part.rows()), n_threads, [&](std::size_t i, int) {
     const auto row = static_cast<Eigen::Index>(i);
-    const float* from = part.row(row).data();
+    const Eigen::RowVectorXf values = part.row(row) / root_;
+    const float* from = values.data();
     float* to = cells.row(row).data();
     for (std::size_t plane = 0; plane < n_planes_; ++plane)
       fold_.add(i_class, {from + plane * n_columns(), n_columns()},

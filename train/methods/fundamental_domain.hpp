@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "elrom/model/symmetry_fold.hpp"
@@ -12,10 +13,10 @@
 
 namespace elrom::methods {
 
-/// One column of each orbit, all orbits being equally large: sums over its cells are sums over all cells, but
-/// for one factor. All cells where there is no such domain: without mirrors, with one that exchanges planes
-/// or has columns on it, or where its columns are no corner of the mesh's box. Thread rule: const use from
-/// any thread.
+/// One column of each orbit, all orbits being equally large. Its values are kept times the root of that
+/// size, so that sums of products over its cells are those over all cells. All cells where there is no such
+/// domain: without mirrors, with one that exchanges planes or has columns on it, or where its columns are no
+/// corner of the mesh's box. Thread rule: const use from any thread.
 class FundamentalDomain {
  public:
   FundamentalDomain(const field::CaseSet& cases, field::Parity parity,
@@ -33,10 +34,10 @@ class FundamentalDomain {
   [[nodiscard]] const model::SymmetryFold& fold() const { return fold_; }
 
   /// Projections of the given rows on a class, product over mirrors of (1 + sign * M) / 2, (rows.size(),
-  /// n_cells()). The classes' projections, added to the same cells, give the rows.
+  /// n_cells()), times the root. The classes' projections, added to the same cells, give the rows.
   [[nodiscard]] MatrixF project(const MatrixF& values, std::span<const std::size_t> rows, std::size_t i_class,
                                 int n_threads) const;
-  /// cells += part, with its signs in the columns outside the domain.
+  /// cells += part over the root, with its signs in the columns outside the domain.
   /// @param part (n, n_cells()) @param cells (n, all cells)
   void add(std::size_t i_class, const MatrixF& part, Eigen::Ref<MatrixF> cells, int n_threads) const;
 
@@ -46,6 +47,7 @@ class FundamentalDomain {
   std::size_t n_planes_, n_all_columns_;
   bool keeps_planes_ = true;
   bool is_whole_ = true;               // all cells
+  float root_ = 1;                     // of the orbits' size
   std::vector<std::int32_t> columns_;  // of the domain, ascending
   std::optional<Box> box_;             // without what is beyond
   model::SymmetryFold fold_;

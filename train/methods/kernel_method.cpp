@@ -380,6 +380,7 @@ MatrixF KernelMethod::predict_at_once(FieldParts field, const field::FieldData& 
   field.domain.add(0, means, found, context.n_threads);
   double may_drop = 0;
   learn(field, data, cases, context, [&](std::size_t c, const Learned& learned) {
+    if (learned.zones.empty()) return;
     if (c == 0) may_drop = droppable(learned.residuals, learned.zones.size());
     const MatrixF departures = over_zones(learned.zones, learned.shrunk, [&](const ZoneKernel& one) {
       const MatrixXd gram = one.zone.gram(learned.shrunk, learned.shrunk);

@@ -125,6 +125,9 @@ VectorXd logs(Index n, double repeated, std::initializer_list<double> rest) {
 }
 
 constexpr math::MinimiseOptions search{.max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6};
+/// Of a peer: to the end, as the authors of processes' programs go.
+constexpr math::MinimiseOptions search_to_the_end{
+    .max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6, .value_tolerance = 1e-8};
 /// From a kernel of nearly the same cases: what more steps would gain is far below the scatter of the cases.
 constexpr math::MinimiseOptions search_nearby{.max_iterations = 15, .memory = 10, .gradient_tolerance = 1e-5};
 
@@ -240,7 +243,7 @@ StationaryKernel fit_stationary_kernel(const MatrixD& x, const MatrixXd& gram, m
     theta[n] = std::log(from.noise);
   }
   const math::Minimum best =
-      least(logarithm(objective), thetas, {logs(n, 0.3, {1e-8}), logs(n, 1e3, {100})}, search);
+      least(logarithm(objective), thetas, {logs(n, 0.3, {1e-8}), logs(n, 1e3, {100})}, search_to_the_end);
   StationaryKernel kernel{VectorXd(x.cols()), std::exp(best.x[n]), std::exp(best.value)};
   for (Index j = 0; j < x.cols(); ++j) kernel.lengths[j] = std::exp(best.x[std::min(j, n - 1)]);
   return kernel;

@@ -1,6 +1,6 @@
 #pragma once
 // Hyperparameters of a smoother by the leave-one-case-out error of whole fields, in closed form, and of a
-// mode by its likelihood; internal to study.
+// mode by its likelihood; internal to methods.
 
 #include <Eigen/Core>
 #include <span>

@@ -9,7 +9,8 @@ namespace elrom::methods {
 
 namespace {
 
-/// What may still be is within so many standard errors of the cases, in every band of columns at once.
+/// What may still be is within so many standard errors of the cases. Cases of a fold share a model and tell
+/// less than independent ones; but all bands of columns are taken at their most at once, which tells more.
 constexpr double chance = 2;
 constexpr Eigen::Index fewest_cases = 24;  ///< that a candidate is judged by
 

@@ -1,6 +1,6 @@
 #pragma once
 // The modes in which a smoother lets a field vary, and the process of each: the smoother has one noise for
-// all that a field does, although its leading modes hardly are noise; internal to study.
+// all that a field does, although its leading modes hardly are noise; internal to methods.
 //
 // A mode is a combination of cases, so a case's product with a mode holds the case's product with itself,
 // its noise squared, which would pass for signal and make every mode look predictable. So that noise is taken

@@ -1,5 +1,5 @@
 #pragma once
-// Parts of a field that a mirror either keeps or turns into their negative; internal to study.
+// Parts of a field that a mirror either keeps or turns into their negative; internal to methods.
 
 #include <span>
 #include <string>

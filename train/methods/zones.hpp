@@ -28,7 +28,7 @@ struct Zone {
 
 /// Zones with their middles at equal distances from the first plane to the last, so those at the ends are
 /// half as high; on every plane the weights add up to 1. Where zones would have less than two planes each, or
-/// a mirror takes cells to other planes, one zone that is everything.
+/// a mirror takes cells to other planes or moves columns otherwise on each, one zone that is everything.
 [[nodiscard]] std::vector<Zone> zones_of(const FundamentalDomain& domain, std::size_t n_zones);
 
 }  // namespace elrom::methods

@@ -94,10 +94,11 @@ void read_earlier_run(CostModel& model, const std::filesystem::path& folder) {
 
 /// Fits of one method a field: the model's, those of the contest and those of the intervals.
 double seconds_without_networks(const CostModel& model, int folds, bool with_peers) {
-  const double side_by_side = std::min(model.n_threads, folds);
-  const auto n_folds = static_cast<std::size_t>(folds);
-  const auto of_folds = static_cast<double>(n_folds + interval_folds(n_folds, model.n_cases));
-  const double fits = 1 + of_folds / std::max(1.0, side_by_side);
+  const auto n_folds = static_cast<std::size_t>(folds), threads = static_cast<std::size_t>(model.n_threads);
+  const auto turns = [&](std::size_t n) {
+    return static_cast<double>(n) / static_cast<double>(std::clamp<std::size_t>(n, 1, threads));
+  };
+  const double fits = 1 + turns(n_folds) + turns(interval_folds(n_folds, model.n_cases));
   return model.seconds_per_fit * static_cast<double>(model.n_fields) * fits * (with_peers ? peers_beside : 1);
 }
 
