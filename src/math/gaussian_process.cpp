@@ -103,9 +103,8 @@ GpParameters fit_gp(const MatrixD& inputs, const MatrixXd& targets, const GpFitO
   for (std::size_t i = 0; i < options.start_lengths.size(); ++i) {
     const double noise = options.start_noises[i % options.start_noises.size()];
     start << VectorXd::Constant(n_lengths, std::log(options.start_lengths[i])), 0, std::log(noise);
-    // To the end, as the authors of processes' programs go.
-    const Minimum found = minimise(objective, start, lower, upper,
-                                   {.max_iterations = options.max_iterations, .value_tolerance = 1e-8});
+    const Minimum found =
+        minimise(objective, start, lower, upper, {.max_iterations = options.max_iterations});
     if (found.value < best.value) best = found;
   }
   check(best.x.size() == n_lengths + 2, "Gaussian process: at least one start");

@@ -124,12 +124,15 @@ VectorXd logs(Index n, double repeated, std::initializer_list<double> rest) {
   return values;
 }
 
-constexpr math::MinimiseOptions search{.max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6};
 /// Of a peer: to the end, as the authors of processes' programs go.
 constexpr math::MinimiseOptions search_to_the_end{
-    .max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6, .value_tolerance = 1e-8};
+    .max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6};
+/// What the kernel's lengths and noise gain by smaller steps is far below what the cases can tell.
+constexpr math::MinimiseOptions search{
+    .max_iterations = 80, .memory = 10, .gradient_tolerance = 1e-6, .value_tolerance = 1e-6};
 /// From a kernel of nearly the same cases: what more steps would gain is far below the scatter of the cases.
-constexpr math::MinimiseOptions search_nearby{.max_iterations = 15, .memory = 10, .gradient_tolerance = 1e-5};
+constexpr math::MinimiseOptions search_nearby{
+    .max_iterations = 15, .memory = 10, .gradient_tolerance = 1e-5, .value_tolerance = 1e-6};
 
 /// The least of what searches from each of `starts` find: a smooth field's error has several valleys.
 math::Minimum least(const math::Objective& objective, std::span<const VectorXd> starts, const Bounds& bounds,

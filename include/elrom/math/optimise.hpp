@@ -14,9 +14,7 @@ struct MinimiseOptions {
   int max_iterations = 100;
   int memory = 10;
   double gradient_tolerance = 1e-5;  ///< on the projected gradient's largest entry
-  /// Relative decrease of one step below which it stops. What hyperparameters gain by less is far below what
-  /// the cases can tell.
-  double value_tolerance = 1e-6;
+  double value_tolerance = 1e-8;     ///< relative decrease of one step below which it stops
 };
 
 struct Minimum {
