@@ -24,14 +24,6 @@ std::string FieldData::key() const {
   return base::digest_of_members(*own_cases, own_info, own_values);
 }
 
-FieldRows::FieldRows(const FieldData& data, std::span<const std::size_t> rows, bool with_mirrors)
-    : data_(data), rows_(rows.begin(), rows.end()), with_mirrors_(with_mirrors) {}
-
-const std::vector<Mirror>& FieldRows::mirrors() const {
-  static const std::vector<Mirror> none;
-  return with_mirrors_ ? data_.cases->mirrors : none;
-}
-
 std::span<const double> FieldRows::inputs(std::size_t i) const {
   return span_of(data_.cases->inputs.row(static_cast<Eigen::Index>(rows_[i])));
 }
@@ -46,7 +38,6 @@ std::string FieldRows::key() const {
   base::add_members(digest, n_planes());
   base::add_members(digest, n_columns());
   base::add_members(digest, info());
-  base::add_members(digest, mirrors());
   for (std::size_t i = 0; i < n_cases(); ++i) {
     base::add_members(digest, load(i));
     base::add_members(digest, inputs(i));

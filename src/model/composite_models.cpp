@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "elrom/base/error.hpp"
 #include "elrom/model/pod_model.hpp"
@@ -77,6 +78,7 @@ std::unique_ptr<FieldModel> BlendModel::without_case(std::size_t i_case) const {
 std::string scale_of(const FieldModel& model) {
   if (const auto* scaled = dynamic_cast<const ScaledModel*>(&model))
     return scaled->logarithm().features().front().name;
+  if (const auto* unfolded = dynamic_cast<const UnfoldedModel*>(&model)) return scale_of(*unfolded->model());
   if (const auto* blend = dynamic_cast<const BlendModel*>(&model))
     for (const auto& part : blend->members())
       if (auto found = scale_of(*part.model); !found.empty()) return found;
@@ -311,6 +313,87 @@ std::unique_ptr<FieldModel> MirrorModel::load(const io::TensorFile& file, const 
     mirror->images_.push_back(std::move(part));
   }
   return mirror;
+}
+
+UnfoldedModel::UnfoldedModel(FeatureMap symmetric, SymmetryFold fold, std::shared_ptr<const FieldModel> model,
+                             std::shared_ptr<const FieldModel> asymmetry, const std::string& where)
+    : symmetric_(std::move(symmetric)),
+      fold_(std::move(fold)),
+      model_(std::move(model)),
+      asymmetry_(std::move(asymmetry)) {
+  const bool fold_fits = fold_.empty() || (fold_.n_orbits() == model_->n_columns() && fold_.n_classes() > 0);
+  const bool model_fits = fold_fits && symmetric_.size() == model_->n_inputs();
+  if (!model_fits) {
+    throw InputError(
+        {.what = "model of a symmetric part does not fit its mesh",
+         .where = where,
+         .found = std::to_string(symmetric_.size()) + " inputs, " + std::to_string(fold_.n_orbits()) +
+                  " orbits of columns",
+         .expected = std::to_string(model_->n_inputs()) + " and " + std::to_string(model_->n_columns())});
+  }
+  if (asymmetry_ && (asymmetry_->n_inputs() != n_inputs() || asymmetry_->n_planes() != n_planes() ||
+                     asymmetry_->n_columns() != n_columns())) {
+    throw InputError({.what = "asymmetry of another size than the symmetric part",
+                      .where = where,
+                      .found = std::to_string(asymmetry_->n_columns()) + " columns",
+                      .expected = std::to_string(n_columns())});
+  }
+}
+
+void UnfoldedModel::predict_symmetric(const Query& query, std::span<float> values, std::span<float> spread,
+                                      Workspace& workspace) const {
+  const Workspace::Frame frame(workspace);
+  const std::span<double> inputs = doubles(workspace, symmetric_.size());
+  symmetric_.evaluate(query.inputs, inputs);
+  const Query own{inputs, query.planes, query.best_build_only};
+  if (fold_.empty()) return model_->predict(own, values, spread, workspace);
+
+  const std::size_t n = n_columns(), n_own = model_->n_columns();
+  const std::span<float> own_values = workspace.floats(query.planes.size() * n_own),
+                         own_spread = workspace.floats(spread.empty() ? 0 : own_values.size());
+  model_->predict(own, own_values, own_spread, workspace);
+  std::ranges::fill(values, 0.0F);
+  std::ranges::fill(spread, 0.0F);
+  for (std::size_t p = 0; p < query.planes.size(); ++p) {
+    fold_.add(0, own_values.subspan(p * n_own, n_own), values.subspan(p * n, n));
+    if (!spread.empty()) fold_.add_squares(0, own_spread.subspan(p * n_own, n_own), spread.subspan(p * n, n));
+  }
+}
+
+void UnfoldedModel::predict(const Query& query, std::span<float> values, std::span<float> spread,
+                            Workspace& workspace) const {
+  predict_symmetric(query, values, spread, workspace);
+  if (!asymmetry_) return;
+  const Workspace::Frame frame(workspace);
+  const std::span<float> own_values = workspace.floats(values.size()),
+                         own_spread = workspace.floats(spread.size());
+  asymmetry_->predict(query, own_values, own_spread, workspace);
+  std::ranges::transform(values, own_values, values.begin(), std::plus());
+  std::ranges::transform(spread, own_spread, spread.begin(), std::plus());
+}
+
+void UnfoldedModel::save(io::TensorFile& file, const std::string& prefix) const {
+  file.set_text(prefix, nlohmann::json{{"kind", "unfolded"}, {"asymmetry", asymmetry_ != nullptr}}.dump());
+  symmetric_.save(file, prefix + "/symmetric");
+  fold_.save(file, prefix + "/fold");
+  model_->save(file, prefix + "/model");
+  if (asymmetry_) asymmetry_->save(file, prefix + "/asymmetry");
+}
+
+std::unique_ptr<FieldModel> UnfoldedModel::load(const io::TensorFile& file, const std::string& prefix,
+                                                const Wanted& wanted) {
+  const std::string where = file.where() + ":" + prefix;
+  const nlohmann::json description = read_description(file, prefix);
+  const auto has_asymmetry = description.find("asymmetry");
+  if (has_asymmetry == description.end() || !has_asymmetry->is_boolean())
+    throw InputError({.what = "incomplete description of a model",
+                      .where = where,
+                      .expected = "\"asymmetry\": true or false"});
+  std::unique_ptr<FieldModel> asymmetry;
+  if (has_asymmetry->get<bool>()) asymmetry = load_field_model(file, prefix + "/asymmetry", wanted);
+  return std::make_unique<UnfoldedModel>(
+      FeatureMap::load(file, prefix + "/symmetric"), SymmetryFold::load(file, prefix + "/fold"),
+      load_field_model(file, prefix + "/model", wanted), std::move(asymmetry), where);
 }
 
 }  // namespace elrom::model

@@ -100,6 +100,12 @@ SymmetryFold::SymmetryFold(const std::vector<field::Mirror>& mirrors, field::Par
   sign_ = io::Tensor::copy(std::span<const float>(signs), {class_signs.size(), n_columns});
 }
 
+std::vector<std::vector<std::size_t>> SymmetryFold::orbits() const {
+  std::vector<std::vector<std::size_t>> orbits(n_orbits_);
+  for (std::size_t j = 0; j < orbit_.size(); ++j) orbits[static_cast<std::size_t>(orbit_[j])].push_back(j);
+  return orbits;
+}
+
 void SymmetryFold::pick(std::span<const float> column, std::span<float> stored) const {
   for (std::size_t o = 0; o < n_orbits_; ++o) stored[o] = column[static_cast<std::size_t>(first_[o])];
 }

@@ -152,10 +152,11 @@ class Workbench {
     return [this, changes, tune](const std::string& field) -> std::unique_ptr<methods::Method> {
       auto method = std::make_unique<methods::NetworksMethod>(settings(changes), trainer_);
       methods::NetworkPlan plan;
-      plan.bands = {{.name = "all", .columns = columns_, .mask = {}}};
+      const auto n_columns = static_cast<std::ptrdiff_t>(columns_.size() / method->columns_each(data_));
+      plan.bands = {{.name = "all", .columns = {columns_.begin(), columns_.begin() + n_columns}, .mask = {}}};
       networks::Hyperparameters h{.learning_rate = 2.5e-3, .n_layers = 2, .n_units = 64, .batch_size = 64};
       if (tune) tune(h);
-      plan.hyperparameters = {h};
+      plan.hyperparameters = {{h}};
       method->keep_plan(field, plan);
       return method;
     };
@@ -205,11 +206,10 @@ class Workbench {
          networks({"networks.relevance=\"gp\""})},
         {{{"decay", "weight decay 0.1"}}, networks({}, decay)},
         {{{"dropout", "dropout 0.1"}}, networks({}, [](H& h) { h.dropout = 0.1; })},
-        {{{"mirrors", "trained on mirror images too"},
-          {"mirrors_average", "and averaged over them at prediction", average_of}},
+        {{{"mirrors", "the symmetric part over its scale, the kernel's asymmetry"}},
          networks({"networks.mirrors=true"})},
-        {{{"mirrors_gp", "mirror images and length scales"}}, networks(both)},
-        {{{"all", "mirror images, length scales, weight decay, dropout"}},
+        {{{"mirrors_gp", "the same and length scales"}}, networks(both)},
+        {{{"all", "the same, length scales, weight decay, dropout"}},
          networks(both,
                   [](H& h) {
                     h.weight_decay = 0.1;

@@ -69,15 +69,18 @@ Model networks(const field::CaseSet& cases, bool masked) {
 }
 
 /// @param planes of its two modes; empty: both planes
-Model pod_mlp(const field::CaseSet& cases, const std::vector<model::ModePlanes>& planes = {}) {
+Model pod_mlp(const field::CaseSet& cases, const std::vector<model::ModePlanes>& planes = {},
+              Eigen::Index n_columns = 2) {
   model::MlpCoefficients::Parts parts{
       .inputs = model::InputScaler::fit(cases.inputs),
       .scale = Eigen::VectorXd::Ones(2),
       .variance = Eigen::VectorXd::Ones(2),
       .builds = {test::random_network({3, 3, 2}, model::Activation::tanh, base::Seed(1))},
       .scores = {0.1}};
-  return model::make_pod_model("pod_mlp", Eigen::VectorXd::Constant(4, 0.2), MatrixF::Constant(2, 4, 0.1F),
-                               Eigen::VectorXd::Constant(4, 0.01), 2,
+  const Eigen::Index n_cells = 2 * n_columns;
+  return model::make_pod_model("pod_mlp", Eigen::VectorXd::Constant(n_cells, 0.2),
+                               MatrixF::Constant(2, n_cells, 0.1F), Eigen::VectorXd::Constant(n_cells, 0.01),
+                               static_cast<std::size_t>(n_columns),
                                std::make_shared<model::MlpCoefficients>(std::move(parts)), {}, {}, planes);
 }
 
@@ -104,6 +107,13 @@ std::map<std::string, Model> models_of(field::CaseSet& cases, const field::Field
       model::FeatureMap({{"scale", {{model::FeatureTerm::Kind::logarithm, 1, {{0}, {1}, 0}, {}, 1e-3}}}},
                         cases.schema.size()),
       models["linear"]);
+  const model::LinearForm both{{0, 1}, {0.5, 0.5}, 0};
+  models["unfolded"] = std::make_shared<model::UnfoldedModel>(
+      model::FeatureMap(
+          {{"a", {{.form = both}}}, {"b", {{.form = both}}}, {"c", {{.form = {{2}, {1.0}, 0}}}}},
+          cases.schema.size()),
+      model::SymmetryFold(cases.mirrors, data.info.parity, {{1}}, 2, 2), pod_mlp(cases, {}, 1),
+      models["kernel"]);
   models["blend_by_column"] = std::make_shared<model::BlendModel>(std::vector<model::BlendModel::Member>{
       {{0.2, 0.8}, models["linear"]}, {{0.8, 0.2}, models["nearest"]}});
   return models;

@@ -18,27 +18,25 @@ struct Study {
   Study() = default;
   Study(const Study&) = delete;
   Study& operator=(const Study&) = delete;
-  [[nodiscard]] std::string key(bool with_mirrors = true) const {
-    return FieldRows(data, rows, with_mirrors).key();
-  }
+  [[nodiscard]] std::string key() const { return FieldRows(data, rows).key(); }
 };
 
 struct Change {
   const char* what;
   std::function<void(Study&)> make;
-  bool whole, some, some_without_mirrors;  ///< whose key is another
+  bool whole, some;  ///< whose key is another
 };
 
 std::vector<Change> changes() {
-  return {{"nothing", [](Study&) {}, false, false, false},
-          {"a value", [](Study& s) { s.data.values(2, 7) += 1; }, true, true, true},
-          {"a value of another case", [](Study& s) { s.data.values(1, 7) += 1; }, true, false, false},
-          {"an input", [](Study& s) { s.cases.inputs(3, 2) += 1; }, true, true, true},
-          {"a load", [](Study& s) { s.cases.loads[0] += 1; }, true, true, true},
-          {"a name of a case", [](Study& s) { s.cases.names[0] = "x"; }, true, false, false},
-          {"a cell's place", [](Study& s) { s.cases.mesh.centre(0, 0) += 1; }, true, false, false},
-          {"how a mirror swaps", [](Study& s) { s.cases.mirrors[0].cell_from[0] += 1; }, true, true, false},
-          {"the mirrors", [](Study& s) { s.cases.mirrors.pop_back(); }, true, true, false}};
+  return {{"nothing", [](Study&) {}, false, false},
+          {"a value", [](Study& s) { s.data.values(2, 7) += 1; }, true, true},
+          {"a value of another case", [](Study& s) { s.data.values(1, 7) += 1; }, true, false},
+          {"an input", [](Study& s) { s.cases.inputs(3, 2) += 1; }, true, true},
+          {"a load", [](Study& s) { s.cases.loads[0] += 1; }, true, true},
+          {"a name of a case", [](Study& s) { s.cases.names[0] = "x"; }, true, false},
+          {"a cell's place", [](Study& s) { s.cases.mesh.centre(0, 0) += 1; }, true, false},
+          {"how a mirror swaps", [](Study& s) { s.cases.mirrors[0].cell_from[0] += 1; }, true, false},
+          {"the mirrors", [](Study& s) { s.cases.mirrors.pop_back(); }, true, false}};
 }
 
 TEST(CaseSet, KeysFollowWhatCanBeRead) {
@@ -48,7 +46,6 @@ TEST(CaseSet, KeysFollowWhatCanBeRead) {
     change.make(after);
     EXPECT_EQ(after.data.key() != before.data.key(), change.whole) << change.what;
     EXPECT_EQ(after.key() != before.key(), change.some) << change.what;
-    EXPECT_EQ(after.key(false) != before.key(false), change.some_without_mirrors) << change.what;
   }
 }
 
@@ -65,14 +62,12 @@ TEST(CaseSet, KeysKnowAllThatTheCatalogueSaysOfAField) {
 
 TEST(CaseSet, RowsShowTheirCasesOnly) {
   const Study study;
-  const FieldRows some(study.data, rows, false);
+  const FieldRows some(study.data, rows);
 
   ASSERT_EQ(some.n_cases(), 3U);
   EXPECT_EQ(some.load(1), study.cases.loads[2]);
   EXPECT_EQ(some.inputs(2)[4], study.cases.inputs(3, 4));
   EXPECT_EQ(some.values(2)[9], study.data.values(3, 9));
-  EXPECT_TRUE(some.mirrors().empty());
-  EXPECT_EQ(FieldRows(study.data, rows).mirrors().size(), 2U);
 }
 
 }  // namespace

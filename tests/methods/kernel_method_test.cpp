@@ -275,6 +275,46 @@ TEST(KernelMethod, EveryOptionIsPartOfTheKey) {
     EXPECT_NE(make_kernel_method(options)->key("pressure"), make_kernel_method()->key("pressure"));
 }
 
+TEST(KernelMethod, ItsSymmetricPartAndItsAsymmetryAreTheWhole) {
+  const field::CaseSet cases = test::toy_cases(24);
+  const field::FieldData data = test::toy_field(cases, 0.1);
+  const auto rows = math::all_rows(20);
+  const auto fit = [&](const KernelOptions& options) {
+    return make_kernel_method(options)->fit(data, rows, {});
+  };
+  const auto whole = fit({}), symmetric = fit({.antisymmetric = false}),
+             asymmetry = fit({.symmetric = false});
+  for (std::size_t i = 20; i < 24; ++i) {
+    const auto row = cases.inputs.row(static_cast<Eigen::Index>(i));
+    const std::vector<double> inputs(row.begin(), row.end());
+    const auto all = predict(*whole, cases, inputs), one = predict(*symmetric, cases, inputs),
+               other = predict(*asymmetry, cases, inputs);
+    double most = 0;
+    for (std::size_t c = 0; c < all.size(); ++c) {
+      EXPECT_NEAR(all[c], one[c] + other[c], 1e-3 * (1 + std::abs(all[c])));
+      most = std::max<double>(most, std::abs(other[c]));
+    }
+    EXPECT_GT(most, 0.1) << "one side's air is not the other's";
+  }
+
+  const auto folds = load_grouped_folds(cases.loads, rows, 4);
+  const auto across = [&](const KernelOptions& options) {
+    return make_kernel_method(options)->cross_predict(data, folds, {});
+  };
+  EXPECT_TRUE(across({}).topRows(20).isApprox(
+      (across({.antisymmetric = false}) + across({.symmetric = false})).topRows(20), 1e-3F));
+}
+
+TEST(KernelMethod, AnAsymmetryIsNothingWithoutMirrors) {
+  const field::CaseSet cases = test::toy_cases(20, false);
+  const field::FieldData data = test::toy_field(cases);
+
+  const auto model = make_kernel_method({.symmetric = false})->fit(data, math::all_rows(20), {});
+
+  const auto row = cases.inputs.row(3);
+  for (const float value : predict(*model, cases, {row.begin(), row.end()})) EXPECT_EQ(value, 0);
+}
+
 TEST(KernelMethod, WorksWithoutMirrors) {
   const field::CaseSet cases = test::toy_cases(30, false);
 

@@ -8,6 +8,8 @@
 
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
+#include "elrom/model/composite_models.hpp"
+#include "fundamental_domain.hpp"
 #include "support/random_network.hpp"
 #include "support/toy_furnace.hpp"
 
@@ -19,12 +21,14 @@ class RandomTrainer final : public networks::Trainer {
  public:
   [[nodiscard]] std::string name() const override { return "random"; }
   [[nodiscard]] networks::TrainingResult train(const networks::TrainingProblem& problem,
-                                               const networks::Hyperparameters&,
+                                               const networks::Hyperparameters& h,
                                                const networks::TrainingBudget&, base::Seed seed,
                                                networks::TrainingMonitor*, const std::stop_token&,
                                                const std::filesystem::path&) const override {
     n_train = problem.train_inputs.rows();
     n_validation = problem.validation_inputs.rows();
+    n_columns = problem.train_targets.cols();
+    n_units.push_back(h.n_units);
     ++n_trained;
     n_gone_on += problem.start.size() > 0 ? 1 : 0;
     if (problem.start.size() > 0) start = problem.start;
@@ -36,9 +40,11 @@ class RandomTrainer final : public networks::Trainer {
     result.epochs = 1;
     return result;
   }
-  mutable std::atomic<Eigen::Index> n_train{0}, n_validation{0};
-  mutable std::atomic<int> n_trained{0}, n_gone_on{0};
-  mutable MatrixF start;  // the last, on one thread
+  // Of the last training, all on one thread.
+  mutable Eigen::Index n_train = 0, n_validation = 0, n_columns = 0;
+  mutable int n_trained = 0, n_gone_on = 0;
+  mutable std::vector<int> n_units;
+  mutable MatrixF start;
 };
 
 class Networks : public ::testing::Test {
@@ -79,30 +85,87 @@ class Networks : public ::testing::Test {
   std::shared_ptr<RandomTrainer> trainer = std::make_shared<RandomTrainer>();
 };
 
-TEST_F(Networks, AveragedOverMirrorImagesTheyAreAsSymmetricAsTheFurnace) {
-  EXPECT_GT(asymmetry(*fit([](auto& s) { s.networks.average = false; })), 0.1)
+TEST_F(Networks, TheyAreAsSymmetricAsTheFurnace) {
+  EXPECT_GT(asymmetry(*fit([](auto& s) { s.networks.mirrors = false; })), 0.1)
       << "random weights know no symmetry";
-  EXPECT_LT(asymmetry(*fit([](auto& s) { s.networks.average = true; })), 1e-4);
+  EXPECT_LT(asymmetry(*fit([](auto&) {})), 1e-4);
+  EXPECT_LT(asymmetry(*fit([](auto& s) { s.networks.mirrors = false, s.networks.average = true; })), 1e-4);
 }
 
-TEST_F(Networks, MirrorImagesAreTrainedOnButDoNotStopTheTraining) {
+TEST_F(Networks, OneNetworkStandsForTheColumnsOfAnOrbit) {
   (void)fit([](auto& s) { s.networks.mirrors = false; });
-  const auto n_train = trainer->n_train.load(), n_validation = trainer->n_validation.load();
-  (void)fit([](auto& s) { s.networks.mirrors = true; });
-  EXPECT_EQ(trainer->n_train, 4 * n_train);
-  EXPECT_EQ(trainer->n_validation, n_validation);
+  EXPECT_EQ(trainer->n_columns, 24);
+  (void)fit([](auto&) {});
+  EXPECT_EQ(trainer->n_columns, 6);
+  networks::Settings settings;
+  EXPECT_EQ(NetworksMethod(settings, trainer).columns_each(data), 4U);
+  settings.networks.mirrors = false;
+  EXPECT_EQ(NetworksMethod(settings, trainer).columns_each(data), 1U);
 }
 
-TEST_F(Networks, WithoutSymmetryThereAreNoImages) {
-  (void)fit([](auto& s) { s.networks.mirrors = false; });
-  const auto n_train = trainer->n_train.load();
+TEST_F(Networks, ALopsidedCaseIsAnsweredLopsidedly) {
+  const auto model = fit([](auto&) {});
+  std::vector<double> even(cases.inputs.row(3).begin(), cases.inputs.row(3).end());
+  const double air = (even[0] + even[1] + even[2] + even[3]) / 4;
+  std::fill_n(even.begin(), 4, air);
+  even[7] = 0.5;
+  auto right = even;
+  right[1] = right[3] = 1.2 * air;
+  right[0] = right[2] = 0.8 * air;
+
+  const auto plain = predict(*model, even), lopsided = predict(*model, right);
+
+  Eigen::VectorXd found(24), expected(24);  // in the lowest plane
+  for (Eigen::Index c = 0; c < 24; ++c) {
+    const auto at = [&](const std::vector<double>& inputs) {
+      const auto p = cases.mesh.centre.row(c);
+      return test::toy_velocity(inputs, p(0), p(1), p(2));
+    };
+    found(c) = lopsided[static_cast<std::size_t>(c)] - plain[static_cast<std::size_t>(c)];
+    expected(c) = at(right) - at(even);
+  }
+  EXPECT_GT(found.dot(expected), 0.9 * found.norm() * expected.norm())
+      << "what the sides differ by is the kernel's, the networks here are random";
+}
+
+TEST_F(Networks, WithoutSymmetryTheyAreThoseOfTheWholeField) {
   const auto model = fit([](auto& s) {
-    s.networks.mirrors = true;
     s.networks.average = true;
     s.symmetry.enabled = false;
   });
-  EXPECT_EQ(trainer->n_train, n_train);
+  EXPECT_EQ(trainer->n_columns, 24);
+  EXPECT_NE(dynamic_cast<const model::BandedNetworks*>(model.get()), nullptr);
+}
+
+TEST_F(Networks, AFieldWithoutMirrorsIsLearnedWhole) {
+  cases.mirrors.clear();
+  const auto model = fit([](auto&) {});
   EXPECT_EQ(model->kind(), "networks");
+  EXPECT_EQ(trainer->n_columns, 24);
+}
+
+TEST_F(Networks, EachBuildStopsOnCasesOfItsOwn) {
+  (void)fit([](auto& s) { s.fit.builds = 5; });
+  EXPECT_EQ(trainer->n_train, 16 * 8) << "the last of five";
+  EXPECT_EQ(trainer->n_validation, 4 * 8);
+  (void)fit([](auto& s) { s.fit.builds = 10; });
+  EXPECT_EQ(trainer->n_train, 18 * 8);
+  EXPECT_EQ(trainer->n_validation, 2 * 8);
+}
+
+TEST_F(Networks, BuildsTakeNearlyBestHyperparametersInTurn) {
+  networks::Settings settings;
+  settings.fit.builds = 5;
+  NetworksMethod method(settings, trainer);
+  NetworkPlan plan;
+  plan.bands = {{.name = "all", .columns = {0, 1, 2, 3, 4, 5}, .mask = {}}};
+  plan.hyperparameters = {{{.n_units = 11}, {.n_units = 12}}};
+  method.keep_plan(data.info.name, plan);
+  trainer->n_units.clear();
+
+  (void)method.fit(data, math::all_rows(20), {});
+
+  EXPECT_THAT(trainer->n_units, ::testing::ElementsAre(11, 12, 11, 12, 11));
 }
 
 /// Two bands at most, one build, on one thread.
@@ -116,17 +179,25 @@ networks::Settings small_settings() {
   return settings;
 }
 
+const model::BandedNetworks& networks_of(const model::FieldModel& model) {
+  if (const auto* unfolded = dynamic_cast<const model::UnfoldedModel*>(&model))
+    return networks_of(*unfolded->model());
+  if (const auto* scaled = dynamic_cast<const model::ScaledModel*>(&model))
+    return networks_of(*scaled->model());
+  return dynamic_cast<const model::BandedNetworks&>(model);
+}
+
 TEST_F(Networks, AWarmStartGoesOnFromTheNetworkOfTheKnownCases) {
   const NetworksMethod method(small_settings(), trainer);
   const WarmStart warm{.parent = "p", .model = nullptr, .known = math::all_rows(16)};
   const auto before = method.fit(data, warm.known, {});
   EXPECT_EQ(trainer->n_gone_on, 0);
-  const auto& earlier = dynamic_cast<const model::BandedNetworks&>(*before);
 
   (void)method.fit(data, math::all_rows(20), {.warm = &warm});
 
   EXPECT_EQ(trainer->n_gone_on, 1);
-  EXPECT_EQ(trainer->start, networks::parameters_of(earlier.parts().submodels.front().builds.front()));
+  EXPECT_EQ(trainer->start,
+            networks::parameters_of(networks_of(*before).parts().submodels.front().builds.front()));
 }
 
 TEST_F(Networks, CrossValidationOfAWarmStartHasSeenNeitherFoldNorNewCases) {
@@ -141,7 +212,10 @@ TEST_F(Networks, CrossValidationOfAWarmStartHasSeenNeitherFoldNorNewCases) {
       changed, joined(known, cases.loads, std::vector<std::size_t>{16, 17, 18, 19}), {.warm = &warm});
 
   EXPECT_EQ(trainer->n_gone_on, 0);
-  EXPECT_EQ(after.topRows(16), before.topRows(16));
+  // Asymmetry is learned from all cases, as the kernel is.
+  const FundamentalDomain domain(cases, data.info.parity, symmetry_classes(2));
+  const auto symmetric = [&](const MatrixF& rows) { return domain.project(rows, warm.known, 0, 1); };
+  EXPECT_TRUE(symmetric(after).isApprox(symmetric(before), 1e-5F));
   EXPECT_GT(after.bottomRows(4).cwiseAbs().rowwise().maxCoeff().minCoeff(), 0) << "and they are predicted";
 }
 

@@ -62,6 +62,37 @@ FeatureMap a_logarithm() {
   return FeatureMap({{"scale", {{FeatureTerm::Kind::value, 1, {{1}, {1.0}, std::log(2.0)}, {}, 0}}}}, 3);
 }
 
+/// Columns are exchanged with those of the other side; inputs 0 and 1 change places.
+field::Mirror swap_mirror(std::size_t planes) {
+  field::Mirror mirror{.name = "swap",
+                       .axes = "y",
+                       .input_from = {1, 0, 2},
+                       .input_sign = {1, 1, 1},
+                       .input_offset = {0, 0, 0}};
+  for (std::size_t c = 0; c < planes * n_columns; ++c) {
+    mirror.cell_from.push_back(
+        static_cast<std::int32_t>(c / n_columns * n_columns + (n_columns - 1 - c % n_columns)));
+  }
+  return mirror;
+}
+
+SymmetryFold swap_fold() {
+  return {{swap_mirror(n_planes)}, field::Parity::vector_y, {{1}}, n_planes, n_columns};
+}
+
+/// The mean of the inputs that change places, twice, and the third input.
+FeatureMap symmetric_inputs() {
+  const LinearForm mean{{0, 1}, {0.5, 0.5}, 0};
+  return FeatureMap({{"a", {{.form = mean}}}, {"b", {{.form = mean}}}, {"c", {{.form = {{2}, {1.0}, 0}}}}},
+                    3);
+}
+
+std::shared_ptr<FieldModel> pod_of(const std::string& kind, std::size_t columns) {
+  const Eigen::VectorXd mean = random_matrix(static_cast<Eigen::Index>(n_planes * columns), 1, "mean");
+  const MatrixF modes = random_matrix(n_modes, mean.size(), "modes").cast<float>();
+  return make_pod_model(kind, mean, modes, mean.cwiseAbs(), columns, coefficients(kind));
+}
+
 std::shared_ptr<FieldModel> make(const std::string& kind) {
   if (kind == "nearest") {
     const Parts p;
@@ -77,9 +108,13 @@ std::shared_ptr<FieldModel> make(const std::string& kind) {
         std::vector<BlendModel::Member>{{column_weights(), make("linear")}, {{0.75}, make("pod_rbf")}});
   }
   if (kind == "scaled") return std::make_shared<ScaledModel>(a_logarithm(), make("pod_gp"));
-  const Eigen::VectorXd mean = random_matrix(n_planes * n_columns, 1, "mean");
-  const MatrixF modes = random_matrix(n_modes, n_planes * n_columns, "modes").cast<float>();
-  return make_pod_model(kind, mean, modes, mean.cwiseAbs(), n_columns, coefficients(kind));
+  if (kind == "unfolded") {
+    return std::make_shared<UnfoldedModel>(symmetric_inputs(), swap_fold(),
+                                           pod_of("pod_gp", swap_fold().n_orbits()), make("linear"));
+  }
+  if (kind == "unfolded_whole")
+    return std::make_shared<UnfoldedModel>(symmetric_inputs(), SymmetryFold(), make("pod_gp"), nullptr);
+  return pod_of(kind, n_columns);
 }
 
 struct Answer {
@@ -100,7 +135,8 @@ const std::vector<std::int32_t> every_plane{0, 1, 2, 3, 4};
 class EveryModel : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Peers, EveryModel,
                          ::testing::Values("nearest", "linear", "pod_gp", "pod_gp_per_mode", "pod_rbf",
-                                           "blend", "blend_by_column", "scaled"));
+                                           "blend", "blend_by_column", "scaled", "unfolded",
+                                           "unfolded_whole"));
 
 TEST_P(EveryModel, IsTheSameAfterSaveAndLoad) {
   const auto model = make(GetParam());
@@ -320,25 +356,49 @@ TEST(ScaledModel, RefusesAScaleThatIsNotOneFeatureOfTheSameInputs) {
                ScaledModel(FeatureMap({{"one", {}}}, 4), make("linear")));
 }
 
+TEST(UnfoldedModel, IsItsOrbitsModelAskedWithSymmetricInputsAndTheAsymmetry) {
+  const std::vector<double> inputs{0.3, -0.7, 0.2}, symmetric{-0.2, -0.2, 0.2};
+  const Answer whole = ask(*make("unfolded"), every_plane, inputs),
+               asymmetry = ask(*make("linear"), every_plane, inputs);
+  const auto own = pod_of("pod_gp", 4);
+  std::vector<float> values(n_planes * 4), spread(values.size());
+  Workspace workspace;
+  own->predict({.inputs = symmetric, .planes = every_plane}, values, spread, workspace);
+
+  for (std::size_t plane = 0; plane < n_planes; ++plane)
+    for (std::size_t c = 0; c < n_columns; ++c) {
+      // The velocity normal to the mirror changes its sign on the other side; on the mirror it is none.
+      const float sign = c < 3 ? 1.0F : c == 3 ? 0.0F : -1.0F;
+      const std::size_t at = plane * n_columns + c, orbit = plane * 4 + std::min(c, 6 - c);
+      EXPECT_NEAR(whole.values[at], sign * values[orbit] + asymmetry.values[at], 1e-5);
+      EXPECT_NEAR(whole.spread[at], sign * sign * spread[orbit] + asymmetry.spread[at], 1e-5);
+    }
+  EXPECT_EQ(make("unfolded")->kind(), "pod_gp");
+}
+
+TEST(UnfoldedModel, WithoutAFoldItsModelHasAllColumns) {
+  EXPECT_EQ(ask(*make("unfolded_whole"), every_plane, {0.3, -0.7, 0.2}),
+            ask(*make("pod_gp"), every_plane, {-0.2, -0.2, 0.2}));
+  EXPECT_EQ(scale_of(UnfoldedModel(symmetric_inputs(), {}, make("scaled"), nullptr)), "scale");
+}
+
+TEST(UnfoldedModel, RefusesPartsThatDoNotFit) {
+  EXPECT_ERROR(InputError, "4 orbits of columns, expected 3 and 7",
+               UnfoldedModel(symmetric_inputs(), swap_fold(), make("pod_gp"), nullptr));
+  EXPECT_ERROR(InputError, "found 0 inputs", UnfoldedModel(FeatureMap({}, 3), {}, make("pod_gp"), nullptr));
+  EXPECT_ERROR(InputError, "found 4 columns, expected 7",
+               UnfoldedModel(symmetric_inputs(), {}, make("pod_gp"), pod_of("linear", 4)));
+  io::TensorFile file;
+  make("unfolded")->save(file, "m");
+  file.set_text("m", R"({"kind": "unfolded", "asymmetry": 1})");
+  EXPECT_ERROR(InputError, "true or false", load_field_model(file, "m"));
+}
+
 TEST(BlendModel, RefusesAnAbsurdNumberOfParts) {
   io::TensorFile file;
   file.set_text("m", R"({"kind": "blend", "parts": 4000000000})");
 
   EXPECT_ERROR(InputError, "between 1 and 64", load_field_model(file, "m"));
-}
-
-/// Two columns that a mirror exchanges; inputs 0 and 1 change places.
-field::Mirror swap_mirror(std::size_t planes) {
-  field::Mirror mirror{.name = "swap",
-                       .axes = "y",
-                       .input_from = {1, 0, 2},
-                       .input_sign = {1, 1, 1},
-                       .input_offset = {0, 0, 0}};
-  for (std::size_t c = 0; c < planes * n_columns; ++c) {
-    mirror.cell_from.push_back(
-        static_cast<std::int32_t>(c / n_columns * n_columns + (n_columns - 1 - c % n_columns)));
-  }
-  return mirror;
 }
 
 TEST(MirrorModel, GivesMirroredCasesMirroredFields) {

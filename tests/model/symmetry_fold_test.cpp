@@ -60,6 +60,15 @@ TEST(SymmetryFold, PickedValuesSpreadBackToTheSameColumn) {
   EXPECT_EQ(unfolded(fold, 0, stored), column);
 }
 
+TEST(SymmetryFold, OrbitsHaveTheirColumns) {
+  field::Mirror mirror{.name = "front-rear", .axes = "x"};
+  mirror.cell_from = {2, 1, 0};
+
+  EXPECT_THAT(SymmetryFold({mirror}, field::Parity::scalar, {{1}}, 1, 3).orbits(),
+              ElementsAre(ElementsAre(0, 2), ElementsAre(1)));
+  EXPECT_TRUE(SymmetryFold().orbits().empty());
+}
+
 TEST(SymmetryFold, MirrorThatExchangesPlanesGivesNoFold) {
   field::Mirror mirror{.name = "up-down", .axes = "x"};
   mirror.cell_from = {2, 3, 0, 1};

@@ -36,21 +36,15 @@ float unscaled_target(const RecordSet& set, std::size_t record, Eigen::Index col
   return set.records.targets(r, column) * set.outputs.deviation(row, column) + set.outputs.mean(row, column);
 }
 
-TEST(Records, TargetsOfTheTrainingRecordsAreStandardisedColumnByColumn) {
+TEST(Records, TargetsAreStandardisedColumnByColumn) {
   const auto cases = test::toy_cases(n_cases);
   const auto data = test::toy_field(cases);
   const auto set = make_records({data, all_cases()}, whole_case_parts(14), {});
 
-  const auto train = set.records.rows(Part::train);
-  ASSERT_EQ(train.size(), 14 * n_planes);
-  for (Eigen::Index c = 0; c < set.records.targets.cols(); ++c) {
-    double sum = 0, squares = 0;
-    for (const auto r : train) {
-      sum += set.records.targets(r, c);
-      squares += std::pow(set.records.targets(r, c), 2);
-    }
-    EXPECT_NEAR(sum / static_cast<double>(train.size()), 0, 1e-5);
-    EXPECT_NEAR(squares / static_cast<double>(train.size()), 1, 1e-4);
+  ASSERT_EQ(set.records.rows(Part::train).size(), 14 * n_planes);
+  for (const auto& column : set.records.targets.colwise()) {
+    EXPECT_NEAR(column.cast<double>().mean(), 0, 1e-5);
+    EXPECT_NEAR(column.cast<double>().squaredNorm() / (n_cases * n_planes), 1, 1e-4);
   }
 }
 
@@ -118,49 +112,42 @@ TEST(RecordSource, KnownCasesKeepTheRecordsThatTheyHadWithoutTheOthers) {
   EXPECT_NE(after.key(), RecordSource(data, all_cases(), recipe).key());
 }
 
-TEST(Records, WhatDoesNotTrainDoesNotMoveTheScalers) {
+TEST(Records, ScalersSeeAllCasesOrThoseThatTheyAreGiven) {
   auto cases = test::toy_cases(n_cases);
   auto data = test::toy_field(cases);
-  const auto parts = whole_case_parts(14);
-  const auto before = make_records({data, all_cases()}, parts, {.relevance = Relevance::gp});
+  const std::vector<std::size_t> first{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
+  const RecordOptions options{.relevance = Relevance::gp};
+  const auto scaled = [&](std::span<const std::size_t> by) {
+    return make_records({data, all_cases()}, whole_case_parts(14), options, by);
+  };
+  const auto before = scaled(first), whole = scaled({});
   data.values.bottomRows(6) *= 1000;
   auto shifted = cases;
   shifted.inputs.bottomRows(6) *= 7;
   data.cases = &shifted;
 
-  const auto after = make_records({data, all_cases()}, parts, {.relevance = Relevance::gp});
+  const auto after = scaled(first);
 
   EXPECT_EQ(after.inputs.mean, before.inputs.mean);
   EXPECT_EQ(after.inputs.factor, before.inputs.factor);
   EXPECT_EQ(after.inputs.relevance, before.inputs.relevance);
   EXPECT_EQ(after.outputs.mean, before.outputs.mean);
   EXPECT_EQ(after.outputs.deviation, before.outputs.deviation);
+  EXPECT_NE(scaled({}).outputs.mean, whole.outputs.mean) << "cases that stop or judge are seen too";
 }
 
-// The toy's field is symmetric as the furnace is: what a mirrored
-// case shows is what the toy has for mirrored inputs.
-TEST(Records, MirrorImagesAreTheFieldsOfMirroredInputs) {
+TEST(RecordSource, EachBuildStopsOnAFoldOfItsOwn) {
   const auto cases = test::toy_cases(n_cases);
   const auto data = test::toy_field(cases);
-  const auto set = make_records({data, all_cases()}, whole_case_parts(14), {.mirrors = true});
+  const RecordRecipe recipe{.options = {}, .parts = {}, .seed = base::Seed(3)};
+  const RecordSource source(data, all_cases(), recipe);
 
-  const std::size_t plain = n_cases * n_planes;
-  ASSERT_EQ(set.records.plane.size(), plain + 3 * 14 * n_planes)
-      << "images train, they neither stop nor judge";
-  const auto group = field::symmetry_group(cases.mirrors, cases.schema.size(), cases.mesh.n_cells());
-  for (std::size_t r = plain; r < set.records.plane.size(); ++r) {
-    EXPECT_EQ(set.records.part[r], Part::train);
-    const auto image = 1 + (r - plain) / (14 * n_planes);
-    const auto inputs = cases.inputs.row(set.records.case_of[r]);
-    const auto mirrored =
-        group[image].apply_to_inputs({inputs.data(), static_cast<std::size_t>(inputs.size())});
-    const auto n_columns = static_cast<Eigen::Index>(cases.mesh.n_columns);
-    for (Eigen::Index c = 0; c < n_columns; c += 5) {
-      const auto p = cases.mesh.centre.row(set.records.plane[r] * n_columns + c);
-      const double expected = test::toy_velocity(mirrored, p(0), p(1), p(2));
-      EXPECT_NEAR(unscaled_target(set, r, c), expected, 1e-4 * (1 + std::abs(expected)));
-    }
-  }
+  const auto parts = source.parts_of_build({.i_build = 2, .n_builds = 5});
+
+  EXPECT_EQ(parts, build_parts(cases.loads, n_planes, recipe.parts, recipe.seed, {2, 5}));
+  const auto problem = make_problem(source.get().records, {.name = "all", .columns = {0}, .mask = {}}, parts);
+  EXPECT_EQ(problem.validation_inputs.rows(), 4 * static_cast<Eigen::Index>(n_planes));
+  EXPECT_EQ(problem.train_inputs.rows(), 16 * static_cast<Eigen::Index>(n_planes));
 }
 
 TEST(Records, AProblemOfABandHasItsColumnsOnly) {

@@ -173,6 +173,32 @@ TEST(Search, AnyStructOfHyperparametersIsSearchedPrunedKeptAndResumed) {
   EXPECT_EQ(TrialStore(path).searches().at(0).trials.size(), 1U) << "tables of their own";
 }
 
+/// Numbers of rounds found nearly the best, of three with these errors.
+std::vector<int> near_best_of(std::array<double, 3> errors) {
+  const SearchSpaceOf<Boosting> space({}, {{"n_rounds", whole_bins({1, 3})}});
+  auto settings = settings_for("direct", 3);
+  settings.confirm = 0;
+  const auto found = search(
+      [&](const Boosting& h, base::Seed, TrainingMonitor*) {
+        TrialOutcome outcome;
+        outcome.validation_mse = errors[static_cast<std::size_t>(h.n_rounds - 1)];
+        return outcome;
+      },
+      settings, space, SearchContextOf<Boosting>{});
+  EXPECT_EQ(found.validation_mse, *std::ranges::min_element(errors));
+  std::vector<int> rounds;
+  for (const auto& h : found.near_best) rounds.push_back(h.n_rounds);
+  return rounds;
+}
+
+TEST(Search, WhatComesWithinATenthOfTheBestIsNearIt) {
+  EXPECT_THAT(near_best_of({2, 1, 3}), ::testing::ElementsAre(2));
+  EXPECT_THAT(near_best_of({1.09, 1, 1.11}), ::testing::ElementsAre(1, 2));
+  EXPECT_THAT(near_best_of({1, 1.01, 3}), ::testing::ElementsAre(1, 2)) << "whichever of two equals wins";
+  EXPECT_THAT(near_best_of({1.01, 1, 3}), ::testing::ElementsAre(1, 2));
+  EXPECT_THAT(near_best_of({0, 1, 2}), ::testing::ElementsAre(1)) << "an error of zero has none beside it";
+}
+
 TEST(SearchSpace, OnlyNumbersOfTheStructAreSearched) {
   const auto space = [](const char* name) {
     return SearchSpaceOf<Hyperparameters>({}, {{name, whole_bins({1, 3})}});

@@ -71,5 +71,57 @@ TEST(Split, ByRecordSpreadsTheCasesOverTheParts) {
   }
 }
 
+std::vector<std::vector<Part>> all_builds(std::size_t n_cases, std::size_t n_builds,
+                                          const PartRule& rule = {}, std::size_t n_planes = 1) {
+  std::vector<std::vector<Part>> builds;
+  for (std::size_t i = 0; i < n_builds; ++i)
+    builds.push_back(build_parts(rising_loads(n_cases), n_planes, rule, base::Seed(1), {i, n_builds}));
+  return builds;
+}
+
+TEST(BuildParts, EveryCaseStopsOneBuildAndIsLearnedFromByTheOthers) {
+  const auto builds = all_builds(23, 10);
+
+  for (std::size_t i = 0; i < 23; ++i) {
+    EXPECT_EQ(std::ranges::count_if(builds, [&](const auto& parts) { return parts[i] == Part::validation; }),
+              1);
+    EXPECT_EQ(std::ranges::count_if(builds, [&](const auto& parts) { return parts[i] == Part::train; }), 9);
+  }
+}
+
+TEST(BuildParts, FewBuildsStopOnNoMoreThanTheRulesShare) {
+  for (const auto& parts : all_builds(40, 2)) EXPECT_EQ(std::ranges::count(parts, Part::validation), 8);
+  const auto builds = all_builds(40, 2);
+  EXPECT_NE(builds[0], builds[1]);
+}
+
+TEST(BuildParts, AFoldSpansTheLoads) {
+  const auto loads = rising_loads(200);
+  for (const auto& parts : all_builds(200, 5)) {
+    double sum = 0;
+    for (std::size_t i = 0; i < loads.size(); ++i) sum += parts[i] == Part::validation ? loads[i] : 0;
+    EXPECT_NEAR(sum / 40, 0.4 + 0.01 * 99.5, 0.06);
+  }
+}
+
+TEST(BuildParts, ByCaseAndByRecord) {
+  for (const auto& parts : all_builds(20, 5, {}, 7))
+    for (std::size_t r = 0; r < parts.size(); ++r) EXPECT_EQ(parts[r], parts[r - r % 7]);
+  SplitSettings by_record;
+  by_record.by = "record";
+  for (const auto& parts : all_builds(20, 5, part_rule(by_record), 50))
+    for (std::size_t i = 0; i < 20; ++i)
+      EXPECT_GT(std::ranges::count(std::span(&parts[i * 50], 50), Part::validation), 0) << i;
+}
+
+TEST(BuildParts, NoneStopsWhereTheRuleHasNoSuchPartOrThereIsOneCase) {
+  SplitSettings all;
+  all.fractions = {0.9, 0, 0.1};
+  EXPECT_EQ(std::ranges::count(all_builds(20, 5, part_rule(all))[0], Part::validation), 0);
+  EXPECT_THAT(all_builds(1, 5)[3], ::testing::ElementsAre(Part::train));
+  EXPECT_THAT(all_builds(2, 5)[3], ::testing::UnorderedElementsAre(Part::train, Part::validation))
+      << "no more folds than cases";
+}
+
 }  // namespace
 }  // namespace elrom::networks

@@ -194,6 +194,7 @@ std::vector<NamedFit> all_fits() {
 #if ELROM_HAS_TORCH
   fits.push_back({"networks", fit_by(networks(tiny_settings()))});
   auto averaged = tiny_settings();
+  averaged.networks.mirrors = false;
   averaged.networks.average = true;
   averaged.bands.scope = "plane";
   fits.push_back({"networks_averaged", fit_by(networks(averaged))});

@@ -127,8 +127,8 @@ std::map<std::string, Effect> effects() {
           {"split.held_out", {"[\"load_*\", \"train_0\"]", all}},
           {"split.by", {"record", from_records}},
           {"split.fractions", {"[0.6, 0.3, 0.1]", from_records}},
-          {"symmetry.enabled", {"false", from_search}},
-          {"symmetry.mirror", {"[{ axis = \"x\" }]", from_search}},
+          {"symmetry.enabled", {"false", from_records}},
+          {"symmetry.mirror", {"[{ axis = \"x\" }]", from_records}},
           {"screen.method", {"fast", screen + networks}},
           {"screen.builds", {"2", screen + networks}},
           {"screen.n_units", {"3", screen + networks}},
@@ -162,7 +162,7 @@ std::map<std::string, Effect> effects() {
           {"networks.activation", {"tanh", from_search}},
           {"networks.targets", {"cell", from_records}},
           {"networks.epoch_records", {"20", from_search}},
-          {"networks.mirrors", {"false", from_search}},
+          {"networks.mirrors", {"false", from_records}},
           {"networks.average", {"true", networks}},
           {"networks.relevance", {"none", from_search}},
           {"networks.transform", {"{ pressure = \"asinh\" }", from_records}},
@@ -185,9 +185,9 @@ TEST_F(Stages, EverySettingMakesThoseAnewThatReadIt) {
   EXPECT_TRUE(table.empty()) << table.begin()->first << " is no setting";
 }
 
-TEST_F(Stages, AnotherMirrorMakesThoseAnewThatTrainOnImages) {
+TEST_F(Stages, AnotherMirrorMakesAllAnewThatLearnTheSymmetricPart) {
   write_mirror("along", 'x');
-  EXPECT_EQ(made_anew({}), (Names{"search", "build", "model auto", "model networks"}));
+  EXPECT_EQ(made_anew({}), (Names{"screen", "search", "build", "model auto", "model networks"}));
 }
 
 TEST_F(Stages, AnotherFieldsTransformLeavesThisOneAlone) {

@@ -290,16 +290,18 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
                                                      std::span<const std::size_t> cases,
                                                      const FitContext& context) const {
   FieldParts field(data, cases, context, options_.scale);
+  const VectorXd mean = options_.symmetric ? field.whole_mean() : VectorXd::Zero(data.values.cols());
   if (field.nothing_to_learn())
-    return mean_model(data, field.whole_mean(), math::column_moments(data.values, cases).deviation);
+    return mean_model(data, mean, math::column_moments(data.values, cases).deviation);
 
   if (field.scale) context.log->detail("kernel: " + data.info.name + " is learned over " + field.scale->name);
   std::vector<ZonePart> parts;
   MatrixF residuals = MatrixF::Zero(static_cast<Index>(cases.size()), data.values.cols());
   double may_drop = 0;
   learn(field, data, cases, context, [&](std::size_t c, const Learned& learned) {
-    field.domain.add(c, learned.residuals, residuals, context.n_threads);
     if (c == 0) may_drop = droppable(learned.residuals, learned.zones.size());
+    if (c == 0 && !options_.symmetric) return;
+    field.domain.add(c, learned.residuals, residuals, context.n_threads);
     for (const ZoneKernel& one : learned.zones) {
       auto part = make_part(one, learned.shrunk, field.features.z, limits_of(c, may_drop), context.n_threads);
       part.i_class = c;
@@ -308,14 +310,14 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
   });
   AllModes all = together(parts, field.domain, context.n_threads);
   const VectorXd residual = residual_deviation(residuals, all);
-  if (parts.empty() || parts.front().i_class > 0)
-    return field.with_scale(mean_model(data, field.whole_mean(), residual));
+  if (parts.empty() || (options_.symmetric && parts.front().i_class > 0))
+    return field.with_scale(mean_model(data, mean, residual));
 
   std::vector<model::SmootherCoefficients::Group> groups;
   for (ZonePart& part : parts) std::ranges::move(part.groups, std::back_inserter(groups));
   auto coefficients = std::make_shared<model::SmootherCoefficients>(
       field.features.derived.map, field.features.scaler, field.features.z, std::move(groups));
-  return field.with_scale(model::make_pod_model("kernel", field.whole_mean(), all.modes, residual,
+  return field.with_scale(model::make_pod_model("kernel", mean, all.modes, residual,
                                                 data.cases->mesh.n_columns, std::move(coefficients),
                                                 field.domain.fold(), std::move(all.class_of), all.planes_of));
 }
@@ -377,11 +379,12 @@ MatrixF KernelMethod::predict_at_once(FieldParts field, const field::FieldData& 
     for (const Index i : own) means.row(i) = field.mean.transpose().cast<float>() + others;
   }
   MatrixF found = MatrixF::Zero(n, data.values.cols());
-  field.domain.add(0, means, found, context.n_threads);
+  if (options_.symmetric) field.domain.add(0, means, found, context.n_threads);
   double may_drop = 0;
   learn(field, data, cases, context, [&](std::size_t c, const Learned& learned) {
     if (learned.zones.empty()) return;
     if (c == 0) may_drop = droppable(learned.residuals, learned.zones.size());
+    if (c == 0 && !options_.symmetric) return;
     const MatrixF departures = over_zones(learned.zones, learned.shrunk, [&](const ZoneKernel& one) {
       const MatrixXd gram = one.zone.gram(learned.shrunk, learned.shrunk);
       return weights_without_own_fold(one.kernel, gram, field.features.z, places, limits_of(c, may_drop),

@@ -8,13 +8,15 @@
 #include "elrom/base/members.hpp"
 #include "elrom/base/parallel.hpp"
 #include "elrom/methods/cross_validation.hpp"
+#include "elrom/methods/kernel_method.hpp"
 #include "elrom/model/composite_models.hpp"
 #include "elrom/networks/stage_files.hpp"
+#include "symmetric_part.hpp"
 
 namespace elrom::methods {
 namespace {
 
-constexpr int cross_builds = 2;  // builds a band in cross-validation: enough to feel what averaging gains
+constexpr int cross_builds = 3;  // builds a band in cross-validation: enough to feel what averaging gains
 
 std::vector<std::size_t> rows_of(const Folds& folds) {
   std::vector<std::size_t> rows;
@@ -36,6 +38,17 @@ std::vector<std::size_t> common(std::span<const std::size_t> some, std::span<con
   std::vector<std::size_t> rows;
   std::ranges::set_intersection(some, others, std::back_inserter(rows));
   return rows;
+}
+
+/// The known ones, with a warm start from some; else all.
+std::vector<std::size_t> planned_among(std::span<const std::size_t> cases, const FitContext& context) {
+  auto known = context.warm == nullptr ? std::vector<std::size_t>() : context.warm->known_among(cases);
+  return known.empty() ? std::vector(cases.begin(), cases.end()) : known;
+}
+
+FitContext without_warm_start(FitContext context) {
+  context.warm = nullptr;
+  return context;
 }
 
 networks::StageContext stage_context(const FitContext& context) {
@@ -69,7 +82,11 @@ model::Submodel assemble_submodel(const networks::Band& band, std::vector<networ
 
 NetworksMethod::NetworksMethod(networks::Settings settings, std::shared_ptr<const networks::Trainer> trainer,
                                const io::StageCache* cache, networks::TrialStore* trials)
-    : settings_(std::move(settings)), trainer_(std::move(trainer)), cache_(cache), trials_(trials) {
+    : settings_(std::move(settings)),
+      trainer_(std::move(trainer)),
+      cache_(cache),
+      trials_(trials),
+      asymmetry_(make_kernel_method({.symmetric = false})) {
   if (cache_ == nullptr) cache_ = &no_cache_;
 }
 
@@ -77,7 +94,7 @@ std::string NetworksMethod::key(const std::string& field) const {
   const auto kept = kept_.find(field);
   const auto plan = kept == kept_.end() ? NetworkPlan() : kept->second;
   return base::digest_of_members(name(), networks::settings_of_field(settings_, field), plan.bands,
-                                 plan.hyperparameters, *trainer_);
+                                 plan.hyperparameters, *trainer_, asymmetry_->key(field));
 }
 
 void NetworksMethod::keep_plan(const std::string& field, NetworkPlan plan) { kept_[field] = std::move(plan); }
@@ -89,26 +106,46 @@ networks::RecordSource NetworksMethod::screened_records(const field::FieldData& 
   return {data, cases, {.options = own.screened, .parts = own.parts, .seed = context.seed}};
 }
 
+class NetworksMethod::Learned {
+ public:
+  /// @param cases that the scale is learned from
+  Learned(const field::FieldData& data, bool symmetric, std::span<const std::size_t> cases,
+          const FitContext& context)
+      : whole_(data) {
+    if (symmetric) part_ = std::make_unique<SymmetricPart>(data, cases, context);
+  }
+  [[nodiscard]] const field::FieldData& data() const { return part_ ? part_->data() : whole_; }
+  /// @param own of data()
+  [[nodiscard]] std::unique_ptr<model::FieldModel> model(
+      std::unique_ptr<model::FieldModel> own, std::unique_ptr<model::FieldModel> asymmetry = nullptr) const {
+    return part_ ? part_->model(std::move(own), std::move(asymmetry)) : std::move(own);
+  }
+
+ private:
+  const field::FieldData& whole_;
+  std::unique_ptr<SymmetricPart> part_;
+};
+
 struct NetworksMethod::Records {
   Records(const field::FieldData& data, std::span<const std::size_t> cases,
           const networks::FieldSettings& settings, const FitContext& context)
       : known_cases(context.warm == nullptr ? std::vector<std::size_t>() : context.warm->known_among(cases)),
         known(data, known_cases, {settings.records, settings.parts, context.seed}),
-        all(data, cases, {settings.records, settings.parts, context.seed, places_among(cases, known_cases)}),
-        planned_cases(known_cases.empty() ? std::vector(cases.begin(), cases.end()) : known_cases) {}
+        all(data, cases, {settings.records, settings.parts, context.seed, places_among(cases, known_cases)}) {
+  }
 
   [[nodiscard]] bool go_on() const { return !known_cases.empty(); }
   [[nodiscard]] const networks::RecordSource& planned() const { return go_on() ? known : all; }
 
   std::vector<std::size_t> known_cases;
   networks::RecordSource known, all;
-  std::vector<std::size_t> planned_cases;
 };
 
 networks::ScreeningResult NetworksMethod::fast_screen(const field::FieldData& data,
                                                       std::span<const std::size_t> cases,
                                                       const FitContext& context) const {
-  const auto source = screened_records(data, cases, context);
+  const Learned learned(data, settings_of(data).symmetric, cases, context);
+  const auto source = screened_records(learned.data(), cases, context);
   return networks::screen_fast(source.get().records, settings_.screen,
                                {.seed = context.seed.derive("screen").derive(data.info.name),
                                 .n_threads = context.n_threads,
@@ -117,9 +154,27 @@ networks::ScreeningResult NetworksMethod::fast_screen(const field::FieldData& da
                                 .task = "fast screen " + data.info.name});
 }
 
+bool NetworksMethod::has_asymmetry(const field::FieldData& data) const {
+  return settings_of(data).symmetric && !data.cases->mirrors.empty();
+}
+
+std::size_t NetworksMethod::columns_each(const field::FieldData& data) const {
+  if (!settings_of(data).symmetric) return 1;
+  const auto& cases = *data.cases;
+  return cases.mesh.n_columns /
+         FundamentalDomain(cases, data.info.parity, symmetry_classes(cases.mirrors.size())).n_columns();
+}
+
 networks::ScreeningResult NetworksMethod::screen_field(const field::FieldData& data,
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const {
+  const Learned learned(data, settings_of(data).symmetric, cases, context);
+  return screen_learned(learned.data(), cases, context);
+}
+
+networks::ScreeningResult NetworksMethod::screen_learned(const field::FieldData& data,
+                                                         std::span<const std::size_t> cases,
+                                                         const FitContext& context) const {
   const auto& field = data.info.name;
   const auto source = screened_records(data, cases, context);
   const networks::ScreenStage stage{.field = field,
@@ -131,17 +186,21 @@ networks::ScreeningResult NetworksMethod::screen_field(const field::FieldData& d
 
 NetworkPlan NetworksMethod::plan(const field::FieldData& data, std::span<const std::size_t> cases,
                                  const FitContext& context) const {
-  const Records records(data, cases, settings_of(data), context);
-  return plan(data, records.planned_cases, records.planned(), context);
+  const auto own = settings_of(data);
+  const auto planned = planned_among(cases, context);
+  const Learned learned(data, own.symmetric, planned, without_warm_start(context));
+  const Records records(learned.data(), cases, own, context);
+  return plan_learned(learned.data(), planned, records.planned(), context);
 }
 
-NetworkPlan NetworksMethod::plan(const field::FieldData& data, std::span<const std::size_t> cases,
-                                 const networks::RecordSource& records, const FitContext& context) const {
+NetworkPlan NetworksMethod::plan_learned(const field::FieldData& data, std::span<const std::size_t> cases,
+                                         const networks::RecordSource& records,
+                                         const FitContext& context) const {
   const auto& field = data.info.name;
   if (const auto kept = kept_.find(field); kept != kept_.end()) return kept->second;
   const auto own = settings_of(data);
   NetworkPlan plan;
-  plan.screening = screen_field(data, cases, context);
+  plan.screening = screen_learned(data, cases, context);
   plan.bands = networks::make_bands(plan.screening, own.bands);
   plan.hyperparameters.resize(plan.bands.size());
   auto running = stage_context(context);
@@ -191,8 +250,9 @@ std::vector<model::Submodel> NetworksMethod::build(const field::FieldData& data,
         networks::BuildStage stage{
             .name = field + "-" + band.name + "-" + std::to_string(i_build),
             .records = &records.planned(),
+            .number = {i_build, static_cast<std::size_t>(own.fit.builds)},
             .band = band,
-            .hyperparameters = plan.hyperparameters[i_band],
+            .hyperparameters = plan.hyperparameters[i_band][i_build % plan.hyperparameters[i_band].size()],
             .budget = {own.fit.max_epochs, own.fit.patience, own.epoch_records},
             .trainer = trainer_.get(),
             .seed = context.seed.derive("fit").derive(field).derive(band.name).derive(i_build)};
@@ -226,7 +286,7 @@ std::unique_ptr<model::FieldModel> NetworksMethod::assemble(const field::FieldDa
       .combination = own.fit.combine == "best" ? model::Combination::best : model::Combination::mean};
   auto networks = std::make_unique<model::BandedNetworks>(std::move(parts));
   const auto& shared = *data.cases;
-  if (!own.average || shared.mirrors.empty()) return networks;
+  if (!own.average || own.symmetric || shared.mirrors.empty()) return networks;
   const auto group = field::symmetry_group(shared.mirrors, shared.schema.size(), shared.mesh.n_cells());
   return std::make_unique<model::MirrorModel>(std::move(networks), group, data.info.parity,
                                               shared.mesh.n_planes);
@@ -236,39 +296,47 @@ std::unique_ptr<model::FieldModel> NetworksMethod::fit(const field::FieldData& d
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const {
   const auto own = settings_of(data);
-  const Records records(data, cases, own, context);
-  const auto found = plan(data, records.planned_cases, records.planned(), context);
-  auto submodels = build(data, found, records, own.fit.builds, context, context.n_trainings());
-  return assemble(data, records.all.get(), std::move(submodels));
+  const auto planned = planned_among(cases, context);
+  const Learned learned(data, own.symmetric, planned, without_warm_start(context));
+  const Records records(learned.data(), cases, own, context);
+  const auto found = plan_learned(learned.data(), planned, records.planned(), context);
+  auto submodels = build(learned.data(), found, records, own.fit.builds, context, context.n_trainings());
+  auto model = assemble(learned.data(), records.all.get(), std::move(submodels));
+  return learned.model(std::move(model),
+                       has_asymmetry(data) ? asymmetry_->fit(data, cases, context) : nullptr);
 }
 
 MatrixF NetworksMethod::predict_folds(const field::FieldData& data, const Folds& folds,
                                       std::span<const std::size_t> wanted, const FitContext& context) const {
   const auto rows = rows_of(folds);
-  auto known = context.warm == nullptr ? rows : context.warm->known_among(rows);
-  if (known.empty()) known = rows;
-  auto cold = context;
-  cold.warm = nullptr;
+  const auto known = planned_among(rows, context);
+  const auto cold = without_warm_start(context);
   const auto found = plan(data, known, cold);
-  MatrixF predicted = MatrixF::Zero(data.values.rows(), data.values.cols());
+  const auto own = settings_of(data);
+  MatrixF predicted = has_asymmetry(data) ? asymmetry_->predict_folds(data, folds, wanted, context)
+                                          : MatrixF::Zero(data.values.rows(), data.values.cols());
   std::atomic<std::int64_t> done{0};
   const auto total = static_cast<std::int64_t>(wanted.size());
-  const auto own = settings_of(data);
   const int n_builds = std::min(own.fit.builds, cross_builds);
   const int within_fold = std::max(1, context.n_trainings() / static_cast<int>(wanted.size()));
   base::parallel_for(
       wanted.size(), context.n_trainings(),
       [&](std::size_t i, int) {
         const std::size_t i_fold = wanted[i];
-        const Records records(data, common(known, rows_without(folds, i_fold)), own, cold);
-        auto submodels = build(data, found, records, n_builds, cold, within_fold);
-        const auto model = assemble(data, records.all.get(), std::move(submodels));
+        const auto others = common(known, rows_without(folds, i_fold));
+        auto within = cold;
+        within.n_threads = within_fold;
+        const Learned learned(data, own.symmetric, others, within);
+        const Records records(learned.data(), others, own, cold);
+        auto submodels = build(learned.data(), found, records, n_builds, cold, within_fold);
+        const auto model = learned.model(assemble(learned.data(), records.all.get(), std::move(submodels)));
         model::Workspace workspace;
+        std::vector<float> values(static_cast<std::size_t>(predicted.cols()));
         for (const auto row : folds[i_fold]) {
           const auto place = static_cast<Eigen::Index>(row);
           const std::span inputs(data.cases->inputs.row(place).data(), data.cases->schema.size());
-          predict_case(*model, inputs, data.cases->mesh.n_planes,
-                       {predicted.row(place).data(), static_cast<std::size_t>(predicted.cols())}, workspace);
+          predict_case(*model, inputs, data.cases->mesh.n_planes, values, workspace);
+          predicted.row(place) += Eigen::RowVectorXf::Map(values.data(), predicted.cols());
         }
         context.log->progress({"cross-validate networks, " + data.info.name, ++done, total, "folds"});
       },

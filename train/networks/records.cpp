@@ -9,26 +9,13 @@
 #include "elrom/math/linear_algebra.hpp"
 #include "elrom/math/ridge.hpp"
 #include "elrom/math/standardiser.hpp"
+#include "elrom/math/statistics.hpp"
 
 namespace elrom::networks {
 namespace {
 
 constexpr double least_relevance = 0.1;
 constexpr Eigen::Index n_components = 10;
-
-// Numbers of the cases that have a training record.
-std::vector<std::size_t> training_cases(const field::FieldRows& data, const std::vector<Part>& part,
-                                        std::span<const std::size_t> among) {
-  const std::size_t n_planes = data.n_planes();
-  std::vector<std::size_t> cases;
-  for (std::size_t i = 0; i < data.n_cases(); ++i) {
-    if (!among.empty() && !std::ranges::binary_search(among, i)) continue;
-    const auto first = part.begin() + static_cast<std::ptrdiff_t>(i * n_planes);
-    if (std::count(first, first + static_cast<std::ptrdiff_t>(n_planes), Part::train) > 0) cases.push_back(i);
-  }
-  check(!cases.empty(), "records: no training record");
-  return cases;
-}
 
 MatrixF transformed_rows(const field::FieldRows& data, std::span<const std::size_t> cases,
                          const model::TargetTransform& transform) {
@@ -59,80 +46,48 @@ model::TargetTransform fit_transform(const field::FieldRows& data, std::span<con
   return model::TargetTransform::fit(kind, values);
 }
 
-// Fills the record table case by case, image by image.
+/// Fills the record table case by case.
 class Filler {
  public:
-  Filler(const field::FieldRows& data, RecordSet& set, std::size_t n_records)
-      : data_(data),
-        set_(set),
-        n_columns_(static_cast<Eigen::Index>(data.n_columns())),
-        encoding_(set.planes.size()),
-        scaled_(set.inputs.size()),
-        image_(data.n_planes() * data.n_columns()) {
+  Filler(const field::FieldRows& data, RecordSet& set)
+      : data_(data), set_(set), encoding_(set.planes.size()), scaled_(set.inputs.size()) {
     auto& records = set.records;
     records.n_planes = data.n_planes();
+    const auto n_records = static_cast<Eigen::Index>(data.n_cases() * data.n_planes());
     const auto n_in = static_cast<Eigen::Index>(set.inputs.size() + set.planes.size());
-    records.inputs.resize(static_cast<Eigen::Index>(n_records), n_in);
-    records.targets.resize(static_cast<Eigen::Index>(n_records), n_columns_);
+    records.inputs.resize(n_records, n_in);
+    records.targets.resize(n_records, static_cast<Eigen::Index>(data.n_columns()));
   }
 
-  /// @param mirror nullptr: the case itself @param parts of its planes @param only_training leaves other
-  /// records out
-  void add(std::size_t i_case, const field::Mirror* mirror, const Part* parts, bool only_training) {
-    load_image(i_case, mirror);
-    for (std::size_t plane = 0; plane < set_.records.n_planes; ++plane) {
-      if (!only_training || parts[plane] == Part::train)
-        add_plane(plane, static_cast<std::int32_t>(i_case), parts[plane]);
-    }
-  }
-  void end() {
-    auto& records = set_.records;
-    records.inputs.conservativeResize(next_, Eigen::NoChange);
-    records.targets.conservativeResize(next_, Eigen::NoChange);
+  void add(std::size_t i_case) {
+    set_.inputs.apply(data_.inputs(i_case), scaled_);
+    for (std::size_t plane = 0; plane < set_.records.n_planes; ++plane)
+      add_plane(plane, static_cast<std::int32_t>(i_case));
   }
 
  private:
-  void load_image(std::size_t i_case, const field::Mirror* mirror) {
-    const auto inputs = data_.inputs(i_case);
-    std::vector<double> values(inputs.begin(), inputs.end());
-    const auto from = data_.values(i_case);
-    if (mirror == nullptr) {
-      std::ranges::copy(from, image_.begin());
-    } else {
-      values = mirror->apply_to_inputs(values);
-      const auto sign = static_cast<float>(mirror->field_sign(data_.info().parity));
-      for (std::size_t c = 0; c < image_.size(); ++c)
-        image_[c] = sign * from[static_cast<std::size_t>(mirror->cell_from[c])];
-    }
-    set_.inputs.apply(values, scaled_);
-  }
-
-  void add_plane(std::size_t plane, std::int32_t i_case, Part part) {
+  void add_plane(std::size_t plane, std::int32_t i_case) {
     auto& records = set_.records;
     set_.planes.encode(plane, encoding_);
     float* x = records.inputs.row(next_).data();
     std::ranges::copy(encoding_, std::ranges::copy(scaled_, x).out);
     const auto scale_row = set_.outputs.row(plane);
-    for (Eigen::Index c = 0; c < n_columns_; ++c) {
-      const float z = set_.transform.apply(
-          image_[plane * static_cast<std::size_t>(n_columns_) + static_cast<std::size_t>(c)]);
+    const std::size_t n_columns = data_.n_columns();
+    const auto values = data_.values(static_cast<std::size_t>(i_case)).subspan(plane * n_columns, n_columns);
+    for (Eigen::Index c = 0; c < records.targets.cols(); ++c) {
+      const float z = set_.transform.apply(values[static_cast<std::size_t>(c)]);
       const float deviation = set_.outputs.deviation(scale_row, c);
       records.targets(next_, c) = deviation > 0 ? (z - set_.outputs.mean(scale_row, c)) / deviation : 0.0F;
     }
     records.plane.push_back(static_cast<std::int32_t>(plane));
     records.case_of.push_back(i_case);
-    records.part.push_back(part);
     ++next_;
   }
 
   const field::FieldRows& data_;
   RecordSet& set_;
-  Eigen::Index n_columns_, next_ = 0;
-  std::vector<float> encoding_, scaled_, image_;
-};
-
-struct Rows {
-  std::vector<std::uint32_t> train, validation;
+  Eigen::Index next_ = 0;
+  std::vector<float> encoding_, scaled_;
 };
 
 bool answers(const Band& band, std::size_t plane) {
@@ -142,29 +97,31 @@ bool answers(const Band& band, std::size_t plane) {
          first + static_cast<std::ptrdiff_t>(band.columns.size());
 }
 
-std::vector<std::uint32_t> rows_of(const ScreeningData& records, const Band& band, Part part) {
-  auto rows = records.rows(part);
-  std::vector<bool> wanted(records.n_planes);
-  for (std::size_t plane = 0; plane < records.n_planes; ++plane) wanted[plane] = answers(band, plane);
-  std::erase_if(rows, [&](std::uint32_t r) { return !wanted[static_cast<std::size_t>(records.plane[r])]; });
+std::vector<std::size_t> rows_of(const ScreeningData& records, const Band& band, std::span<const Part> part,
+                                 Part wanted) {
+  std::vector<bool> answered(records.n_planes);
+  for (std::size_t plane = 0; plane < records.n_planes; ++plane) answered[plane] = answers(band, plane);
+  std::vector<std::size_t> rows;
+  for (std::size_t r = 0; r < part.size(); ++r)
+    if (part[r] == wanted && answered[static_cast<std::size_t>(records.plane[r])]) rows.push_back(r);
   return rows;
 }
 
-void fill(const ScreeningData& records, const Band& band, Part part, MatrixF& inputs, MatrixF& targets,
-          MatrixF& weights) {
-  const auto rows = rows_of(records, band, part);
+void fill(const ScreeningData& records, const Band& band, std::span<const std::size_t> rows, MatrixF& inputs,
+          MatrixF& targets, MatrixF& weights) {
   const auto n = static_cast<Eigen::Index>(rows.size()),
              n_out = static_cast<Eigen::Index>(band.columns.size());
   inputs.resize(n, records.inputs.cols());
   targets.resize(n, n_out);
   if (!band.mask.empty()) weights.resize(n, n_out);
   for (Eigen::Index r = 0; r < n; ++r) {
-    const auto row = rows[static_cast<std::size_t>(r)];
+    const auto row = static_cast<Eigen::Index>(rows[static_cast<std::size_t>(r)]);
     inputs.row(r) = records.inputs.row(row);
     for (Eigen::Index c = 0; c < n_out; ++c) {
       targets(r, c) = records.targets(row, band.columns[static_cast<std::size_t>(c)]);
       if (!band.mask.empty()) {
-        weights(r, c) = band.mask[static_cast<std::size_t>(records.plane[row] * n_out + c)];
+        weights(r, c) =
+            band.mask[static_cast<std::size_t>(records.plane[rows[static_cast<std::size_t>(r)]] * n_out + c)];
       }
     }
   }
@@ -209,10 +166,12 @@ std::vector<double> gp_relevance(const MatrixD& inputs, const Eigen::MatrixXd& c
 }
 
 /// Known cases are dealt out as if the others were not there, then the others among themselves.
-std::vector<Part> parts_of(const field::FieldRows& data, const RecordRecipe& recipe) {
+/// @param deal the parts of the records of cases with these loads
+template <class Deal>
+std::vector<Part> parts_of(const field::FieldRows& data, const RecordRecipe& recipe, const Deal& deal) {
   const auto n_planes = data.n_planes();
   std::vector<Part> parts(data.n_cases() * n_planes);
-  const auto deal = [&](bool known) {
+  for (const bool known : {true, false}) {
     std::vector<std::size_t> cases;
     std::vector<double> loads;
     for (std::size_t i = 0; i < data.n_cases(); ++i) {
@@ -220,13 +179,11 @@ std::vector<Part> parts_of(const field::FieldRows& data, const RecordRecipe& rec
       cases.push_back(i);
       loads.push_back(data.load(i));
     }
-    const auto dealt = split_records(loads, n_planes, recipe.parts, recipe.seed);
+    const std::vector<Part> dealt = deal(loads);
     for (std::size_t k = 0; k < cases.size(); ++k)
       std::copy_n(dealt.begin() + static_cast<std::ptrdiff_t>(k * n_planes), n_planes,
                   parts.begin() + static_cast<std::ptrdiff_t>(cases[k] * n_planes));
-  };
-  deal(true);
-  deal(false);
+  }
   return parts;
 }
 
@@ -236,7 +193,8 @@ RecordSet make_records(const field::FieldRows& data, const std::vector<Part>& pa
                        const RecordOptions& options, std::span<const std::size_t> scaled_by) {
   const auto n_planes = data.n_planes();
   check(part.size() == data.n_cases() * n_planes, "records: a part for every record");
-  const auto building = training_cases(data, part, scaled_by);
+  const auto building = scaled_by.empty() ? math::all_rows(data.n_cases())
+                                          : std::vector<std::size_t>(scaled_by.begin(), scaled_by.end());
   RecordSet set;
   set.transform = fit_transform(data, building, options.transform);
   {
@@ -247,34 +205,38 @@ RecordSet make_records(const field::FieldRows& data, const std::vector<Part>& pa
   }
   set.planes = {.kind = options.encoding, .n_planes = n_planes};
 
-  const auto group = options.mirrors
-                         ? field::symmetry_group(data.mirrors(), data.n_inputs(), n_planes * data.n_columns())
-                         : std::vector<field::Mirror>{};
-  Filler filler(data, set, part.size() * std::max<std::size_t>(group.size(), 1));
-  for (std::size_t i = 0; i < data.n_cases(); ++i) filler.add(i, nullptr, &part[i * n_planes], false);
-  for (std::size_t g = 1; g < group.size(); ++g)
-    for (std::size_t i = 0; i < data.n_cases(); ++i) filler.add(i, &group[g], &part[i * n_planes], true);
-  filler.end();
+  Filler filler(data, set);
+  for (std::size_t i = 0; i < data.n_cases(); ++i) filler.add(i);
+  set.records.part = part;
   return set;
 }
 
 RecordSource::RecordSource(const field::FieldData& data, std::span<const std::size_t> cases,
                            RecordRecipe recipe)
-    : data_(data, cases, recipe.options.mirrors),
-      recipe_(std::move(recipe)),
-      key_(base::digest_of_members(data_, recipe_)) {}
+    : data_(data, cases), recipe_(std::move(recipe)), key_(base::digest_of_members(data_, recipe_)) {}
 
 const RecordSet& RecordSource::get() const {
-  std::call_once(
-      once_, [&] { set_ = make_records(data_, parts_of(data_, recipe_), recipe_.options, recipe_.known); });
+  std::call_once(once_, [&] {
+    const auto parts = parts_of(data_, recipe_, [&](std::span<const double> loads) {
+      return split_records(loads, data_.n_planes(), recipe_.parts, recipe_.seed);
+    });
+    set_ = make_records(data_, parts, recipe_.options, recipe_.known);
+  });
   return set_;
 }
 
-TrainingProblem make_problem(const ScreeningData& records, const Band& band) {
+std::vector<Part> RecordSource::parts_of_build(BuildNumber number) const {
+  return parts_of(data_, recipe_, [&](std::span<const double> loads) {
+    return build_parts(loads, data_.n_planes(), recipe_.parts, recipe_.seed, number);
+  });
+}
+
+TrainingProblem make_problem(const ScreeningData& records, const Band& band, std::span<const Part> part) {
   TrainingProblem problem;
-  fill(records, band, Part::train, problem.train_inputs, problem.train_targets, problem.train_weights);
-  fill(records, band, Part::validation, problem.validation_inputs, problem.validation_targets,
-       problem.validation_weights);
+  fill(records, band, rows_of(records, band, part, Part::train), problem.train_inputs, problem.train_targets,
+       problem.train_weights);
+  fill(records, band, rows_of(records, band, part, Part::validation), problem.validation_inputs,
+       problem.validation_targets, problem.validation_weights);
   return problem;
 }
 

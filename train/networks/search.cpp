@@ -18,6 +18,7 @@ using Row = TrialOf<NamedValues>;
 
 constexpr int eta = 3;
 constexpr std::size_t never_pruned = 8;  // the first trials show what can be reached
+constexpr double nearly = 1.1;           // times the best error: about what seeds differ by
 
 double finite(double value) {
   return value < worst_value ? std::max(value, 0.0) : worst_value;
@@ -168,12 +169,9 @@ class Searcher {
   void confirm() {
     auto sorted = candidates();
     check(!sorted.empty(), "search: at least one trial");
-    result_.best = sorted.front().hyperparameters;
-    result_.validation_mse = sorted.front().value;
-    if (search_.confirm < 2 || sorted.size() < 2) return;
+    if (search_.confirm < 2 || sorted.size() < 2) return choose(sorted);
     sorted.resize(std::min(sorted.size(), static_cast<std::size_t>(search_.confirm)));
-    double best = HUGE_VAL;
-    for (const auto& trial : sorted) {
+    for (auto& trial : sorted) {
       double sum = 0;
       for (int i_seed = 1; i_seed <= search_.confirm_seeds; ++i_seed) {
         if (search_.stop.stop_requested()) throw Interrupted("stopped on request");
@@ -181,9 +179,20 @@ class Searcher {
         result_.trials.push_back(again);
         sum += again.value;
       }
-      const double mean = sum / search_.confirm_seeds;
-      if (mean < best) best = mean, result_.best = trial.hyperparameters, result_.validation_mse = mean;
+      trial.value = sum / search_.confirm_seeds;
     }
+    choose(sorted);
+  }
+
+  void choose(const std::vector<Row>& among) {
+    const Row& best = *std::ranges::min_element(among, {}, &Row::value);
+    result_.best = best.hyperparameters;
+    result_.validation_mse = best.value;
+    std::map<std::string, NamedValues> near;
+    for (const Row& trial : among)
+      if (trial.value <= nearly * best.value)
+        near.emplace(key_of(trial.hyperparameters), trial.hyperparameters);
+    for (auto& [key, hyperparameters] : near) result_.near_best.push_back(std::move(hyperparameters));
   }
 
   const ValueSearch& search_;

@@ -58,34 +58,65 @@ std::vector<std::size_t> shuffled_strata(const std::vector<std::size_t>& order, 
   return result;
 }
 
-}  // namespace
-
-std::vector<Part> split_cases(std::span<const double> loads, std::span<const double> fractions,
-                              base::Seed seed) {
+/// Ordered by load and shuffled within strata.
+std::vector<std::size_t> dealing_order(std::span<const double> loads, base::Seed seed) {
   const auto rank = [&](std::size_t i) { return std::isnan(loads[i]) ? HUGE_VAL : loads[i]; };
   std::vector<std::size_t> order(loads.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, rank);
   base::Random random(seed.derive("split"));
+  return shuffled_strata(order, random);
+}
+
+std::vector<double> numbers(std::size_t n) {
+  std::vector<double> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  return numbers;
+}
+
+/// @param deal parts of items with these ranks. By record its number stands for its load: strata are runs of
+/// records, dealt out without regard to cases.
+template <class Deal>
+std::vector<Part> record_parts(std::span<const double> loads, std::size_t n_planes, const PartRule& rule,
+                               const Deal& deal) {
+  if (rule.by == "record") return deal(numbers(loads.size() * n_planes));
+  const std::vector<Part> cases = deal(std::vector<double>(loads.begin(), loads.end()));
+  std::vector<Part> records(loads.size() * n_planes);
+  for (std::size_t r = 0; r < records.size(); ++r) records[r] = cases[r / n_planes];
+  return records;
+}
+
+}  // namespace
+
+std::vector<Part> split_cases(std::span<const double> loads, std::span<const double> fractions,
+                              base::Seed seed) {
   Dealer dealer(fractions);
   std::vector<Part> parts(loads.size());
-  for (const auto i : shuffled_strata(order, random)) parts[i] = dealer.next();
+  for (const auto i : dealing_order(loads, seed)) parts[i] = dealer.next();
   give_every_part_one(parts, fractions);
   return parts;
 }
 
 std::vector<Part> split_records(std::span<const double> loads, std::size_t n_planes, const PartRule& rule,
                                 base::Seed seed) {
-  std::vector<Part> records(loads.size() * n_planes);
-  if (rule.by == "record") {
-    // The record's number stands for its load: strata are runs of records, dealt out without regard to cases.
-    std::vector<double> rank(records.size());
-    std::iota(rank.begin(), rank.end(), 0.0);
-    return split_cases(rank, rule.fractions, seed);
-  }
-  const auto cases = split_cases(loads, rule.fractions, seed);
-  for (std::size_t r = 0; r < records.size(); ++r) records[r] = cases[r / n_planes];
-  return records;
+  return record_parts(loads, n_planes, rule, [&](const std::vector<double>& ranks) {
+    return split_cases(ranks, rule.fractions, seed);
+  });
+}
+
+std::vector<Part> build_parts(std::span<const double> loads, std::size_t n_planes, const PartRule& rule,
+                              base::Seed seed, BuildNumber number) {
+  const double share = rule.fractions[static_cast<std::size_t>(Part::validation)];
+  return record_parts(loads, n_planes, rule, [&](const std::vector<double>& ranks) {
+    std::vector<Part> parts(ranks.size(), Part::train);
+    if (!(share > 0) || ranks.size() < 2) return parts;
+    const auto least = static_cast<std::size_t>(std::ceil(1 / share - 1e-9));
+    const auto n_folds = std::min(std::max({number.n_builds, least, std::size_t{2}}), ranks.size());
+    const auto order = dealing_order(ranks, seed);
+    for (std::size_t k = 0; k < order.size(); ++k)
+      if (k % n_folds == number.i_build % n_folds) parts[order[k]] = Part::validation;
+    return parts;
+  });
 }
 
 }  // namespace elrom::networks

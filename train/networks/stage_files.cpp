@@ -49,18 +49,32 @@ TrainingResult training_of(const io::TensorFile& file) {
   return result;
 }
 
-io::TensorFile to_file(const Hyperparameters& h, double validation_mse) {
+namespace {
+
+/// Under which the i-th ones' members stand.
+std::string prefix_of(std::size_t i) { return std::to_string(i) + "/"; }
+
+}  // namespace
+
+io::TensorFile to_file(std::span<const Hyperparameters> hyperparameters, double validation_mse) {
   io::TensorFile file;
-  for_each_hyperparameter(h,
-                          [&](const char* name, const auto& value) { file.set_text(name, text_of(value)); });
+  for (std::size_t i = 0; i < hyperparameters.size(); ++i)
+    for_each_hyperparameter(hyperparameters[i], [&](const char* name, const auto& value) {
+      file.set_text(prefix_of(i) + name, text_of(value));
+    });
   file.set_text("validation_mse", base::number(validation_mse));
   return file;
 }
 
-Hyperparameters hyperparameters_of(const io::TensorFile& file) {
-  Hyperparameters h;
-  for_each_hyperparameter(h, [&](const char* name, auto& value) { read_text(file.text(name), value); });
-  return h;
+std::vector<Hyperparameters> hyperparameters_of(const io::TensorFile& file) {
+  std::vector<Hyperparameters> all;
+  do {
+    const std::string prefix = prefix_of(all.size());
+    for_each_hyperparameter(all.emplace_back(), [&](const char* name, auto& value) {
+      read_text(file.text(prefix + name), value);
+    });
+  } while (file.texts().contains(prefix_of(all.size()) + Hyperparameters::names.front()));
+  return all;
 }
 
 }  // namespace elrom::networks

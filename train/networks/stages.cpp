@@ -19,13 +19,11 @@ RecordOptions record_options(const Settings& settings, const std::string& field)
           .transform = model::transform_of(
               transform == settings.networks.transform.end() ? "none" : transform->second),
           .scale_cells = settings.networks.targets == "cell",
-          .mirrors = settings.networks.mirrors && settings.symmetry.enabled,
           .relevance = relevance_named(settings.networks.relevance)};
 }
 
 RecordOptions screened_options(RecordOptions options) {
   options.encoding = model::PlaneEncodingKind::index;
-  options.mirrors = false;
   options.relevance = Relevance::none;
   return options;
 }
@@ -57,7 +55,8 @@ FieldSettings settings_of_field(const Settings& settings, const std::string& fie
           .activation = model::activation_of(settings.networks.activation),
           .fit = settings.fit,
           .epoch_records = settings.networks.epoch_records,
-          .average = settings.networks.average && settings.symmetry.enabled};
+          .average = settings.networks.average && settings.symmetry.enabled,
+          .symmetric = settings.networks.mirrors && settings.symmetry.enabled};
 }
 
 io::TensorFile ScreenStage::compute(const StageContext& context) const {
@@ -86,11 +85,11 @@ io::TensorFile SearchStage::compute(const StageContext& context) const {
         return trainer->train(problem, h, budget, own, monitor, context.stop);
       },
       settings, SearchSpace(settings, activation), search_context);
-  return to_file(found.best, found.validation_mse);
+  return to_file(found.near_best, found.validation_mse);
 }
 
 io::TensorFile BuildStage::compute(const StageContext& context) const {
-  auto problem = make_problem(records->get().records, band);
+  auto problem = make_problem(records->get().records, band, records->parts_of_build(number));
   problem.start = start;
   const auto trained =
       trainer->train(problem, hyperparameters, budget, seed, nullptr, context.stop, context.checkpoint);

@@ -12,7 +12,8 @@ void print_bands(const std::vector<study::FieldOutcome>& outcomes) {
   fmt::print("{:<24} {:<14} {:>8}\n", "field", "band", "columns");
   for (const auto& outcome : outcomes) {
     for (const auto& band : outcome.bands)
-      fmt::print("{:<24} {:<14} {:>8}\n", outcome.field, band.name, band.columns.size());
+      fmt::print("{:<24} {:<14} {:>8}\n", outcome.field, band.name,
+                 band.columns.size() * outcome.columns_each);
   }
 }
 

@@ -58,23 +58,43 @@ MethodField score_method(const FieldTask& task, const MatrixF& truth, const Matr
   return result;
 }
 
-// Cells a submodel answers for, in all planes.
+/// Networks, and the columns of the field that each of their own stands for.
+struct FoundNetworks {
+  const model::BandedNetworks* networks = nullptr;  // nullptr: the model is something else
+  std::vector<std::vector<std::size_t>> columns;
+};
+FoundNetworks networks_of(const model::FieldModel& model) {
+  if (const auto* scaled = dynamic_cast<const model::ScaledModel*>(&model))
+    return networks_of(*scaled->model());
+  if (const auto* unfolded = dynamic_cast<const model::UnfoldedModel*>(&model)) {
+    auto found = networks_of(*unfolded->model());
+    if (!unfolded->fold().empty()) found.columns = unfolded->fold().orbits();
+    return found;
+  }
+  FoundNetworks found{dynamic_cast<const model::BandedNetworks*>(&model), {}};
+  for (std::size_t c = 0; c < model.n_columns(); ++c) found.columns.push_back({c});
+  return found;
+}
+
+// Cells of the field a submodel answers for, in all planes.
 std::vector<std::size_t> cells_of(const model::Submodel& submodel, std::size_t n_planes,
-                                  std::size_t n_columns) {
+                                  std::size_t n_columns, const FoundNetworks& of) {
   std::vector<std::size_t> cells;
   for (std::size_t plane = 0; plane < n_planes; ++plane)
     for (std::size_t j = 0; j < submodel.columns.size(); ++j)
       if (submodel.answers(plane, j))
-        cells.push_back(plane * n_columns + static_cast<std::size_t>(submodel.columns[j]));
+        for (const std::size_t column : of.columns[static_cast<std::size_t>(submodel.columns[j])])
+          cells.push_back(plane * n_columns + column);
   return cells;
 }
 
-std::vector<SubmodelScore> score_submodels(const model::BandedNetworks& networks, const MatrixF& truth,
-                                           const MatrixF& prediction, const TrainingStatistics& statistics) {
+std::vector<SubmodelScore> score_submodels(const FoundNetworks& found, std::size_t n_columns,
+                                           const MatrixF& truth, const MatrixF& prediction,
+                                           const TrainingStatistics& statistics) {
   std::vector<SubmodelScore> scores;
-  const auto n_columns = networks.n_columns();
-  for (const auto& submodel : networks.parts().submodels) {
-    const auto cells = cells_of(submodel, static_cast<std::size_t>(truth.cols()) / n_columns, n_columns);
+  for (const auto& submodel : found.networks->parts().submodels) {
+    const auto cells =
+        cells_of(submodel, static_cast<std::size_t>(truth.cols()) / n_columns, n_columns, found);
     SubmodelScore score{.name = submodel.name, .n_cells = cells.size()};
     for (Eigen::Index i = 0; i < truth.rows() && !cells.empty(); ++i)
       score.sums += error_sums(row(truth, static_cast<std::size_t>(i)),
@@ -224,9 +244,8 @@ FieldAccuracy evaluate_field(const FieldTask& task, Figures* figures) {
       result.choice = choice;
       result.choice.scale = model::scale_of(*model);
     }
-    const auto* networks = dynamic_cast<const model::BandedNetworks*>(model.get());
-    if (networks != nullptr && result.submodels.empty())
-      result.submodels = score_submodels(*networks, truth, predictions.back(), statistics);
+    if (const auto found = networks_of(*model); found.networks != nullptr && result.submodels.empty())
+      result.submodels = score_submodels(found, model->n_columns(), truth, predictions.back(), statistics);
   }
   result.noise = noise_of(task);
   score_against_averages(task, predictions, statistics, result);

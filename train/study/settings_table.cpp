@@ -155,10 +155,11 @@ io::SettingsTable<Settings> make_table() {
       "networks.epoch_records", "records of an epoch at most, 0: all; the next epoch goes on with the others",
       [](auto& s) -> auto& { return s.networks.epoch_records; }, 0);
   t.flag(
-      "networks.mirrors", "train networks on mirror images too",
+      "networks.mirrors",
+      "networks learn the symmetric part of a field over its scale, once for all mirror images",
       [](auto& s) -> auto& { return s.networks.mirrors; });
   t.flag(
-      "networks.average", "average what networks answer over mirror images",
+      "networks.average", "average what networks answer over mirror images, with networks.mirrors=false",
       [](auto& s) -> auto& { return s.networks.average; });
   t.word("networks.relevance",
          "scale the inputs by their weight in a ridge fit, or by a process's length scales",
@@ -194,10 +195,10 @@ const std::vector<EffortRow>& effort_rows() {
       {[](S& s) -> int& { return s.search.trials; }, {4, 12, 50}},
       {[](S& s) -> int& { return s.search.confirm; }, {0, 2, 5}},
       {[](S& s) -> int& { return s.search.confirm_seeds; }, {1, 2, 3}},
-      {[](S& s) -> int& { return s.search.max_epochs; }, {15, 24, 120}},
-      {[](S& s) -> int& { return s.search.patience; }, {3, 4, 12}},
-      {[](S& s) -> int& { return s.fit.max_epochs; }, {30, 60, 400}},
-      {[](S& s) -> int& { return s.fit.patience; }, {5, 8, 30}},
+      {[](S& s) -> int& { return s.search.max_epochs; }, {24, 24, 120}},
+      {[](S& s) -> int& { return s.search.patience; }, {5, 5, 12}},
+      {[](S& s) -> int& { return s.fit.max_epochs; }, {40, 60, 400}},
+      {[](S& s) -> int& { return s.fit.patience; }, {6, 8, 30}},
       {[](S& s) -> int& { return s.peers.folds; }, {6, 6, 10}},
   };
   return rows;

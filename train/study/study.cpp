@@ -150,7 +150,8 @@ struct Study::Impl {
       outcomes.push_back({.field = data.info.name,
                           .method = "networks",
                           .cross_validated_nrmse = NAN,
-                          .bands = std::move(bands)});
+                          .bands = std::move(bands),
+                          .columns_each = networks.columns_each(data)});
     });
     return outcomes;
   }

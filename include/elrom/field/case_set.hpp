@@ -43,15 +43,15 @@ struct FieldData {
 /// part of its key.
 class FieldRows {
  public:
-  /// @param with_mirrors else there are none. `data` must outlive it
-  FieldRows(const FieldData& data, std::span<const std::size_t> rows, bool with_mirrors = true);
+  /// @param data must outlive it
+  FieldRows(const FieldData& data, std::span<const std::size_t> rows)
+      : data_(data), rows_(rows.begin(), rows.end()) {}
 
   [[nodiscard]] std::size_t n_cases() const { return rows_.size(); }
   [[nodiscard]] std::size_t n_inputs() const { return data_.cases->schema.size(); }
   [[nodiscard]] std::size_t n_planes() const { return data_.cases->mesh.n_planes; }
   [[nodiscard]] std::size_t n_columns() const { return data_.cases->mesh.n_columns; }
   [[nodiscard]] const FieldInfo& info() const { return data_.info; }
-  [[nodiscard]] const std::vector<Mirror>& mirrors() const;
   [[nodiscard]] double load(std::size_t i) const { return data_.cases->loads[rows_[i]]; }
   [[nodiscard]] std::span<const double> inputs(std::size_t i) const;  ///< SI, (n_inputs())
   [[nodiscard]] std::span<const float> values(std::size_t i) const;   ///< SI, (n_planes() * n_columns())
@@ -61,7 +61,6 @@ class FieldRows {
  private:
   const FieldData& data_;
   std::vector<std::size_t> rows_;
-  bool with_mirrors_;
 };
 
 }  // namespace elrom::field

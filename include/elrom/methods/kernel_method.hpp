@@ -37,8 +37,9 @@ struct KernelOptions {
   std::size_t most_modes = 80;  ///< for the symmetric part; an antisymmetric part has at most a quarter of it
   std::size_t own_modes = 4;    ///< leading modes of a zone with lengths and noise of their own
   std::size_t zones = 3;        ///< of height, each with a smoother of its own; they fade into each other
-  int passes = 2;     ///< searches; from the second on, errors are weighted by what the first one trusts
-  bool scale = true;  ///< learn the field over a scale that the inputs give
+  int passes = 2;         ///< searches; from the second on, errors are weighted by what the first one trusts
+  bool scale = true;      ///< learn the field over a scale that the inputs give
+  bool symmetric = true;  ///< false: the asymmetry alone, about zero
   bool antisymmetric = true;  ///< learn the antisymmetric parts too, instead of predicting none
   bool shrink = true;         ///< spectral and cell-wise shrinkage
 };

@@ -1,6 +1,11 @@
 #pragma once
 // The source's method for one field: screen every column, sort the columns into bands, search each band's
-// hyperparameters, build each band's network several times.
+// hyperparameters, build each band's network several times; each build stops on a fold of cases of its own,
+// so that all cases build some of them.
+//
+// With networks.mirrors they learn the symmetric part of the field over its scale, on one column of each
+// orbit of the mirrors; scale and asymmetry are learned as by the kernel method, from all cases. Bands are
+// then of those columns.
 //
 // With a warm start the plan is that of the cases known before, and every network of the model goes on from
 // the one that was trained on those. Cross-validation trains nothing: its networks are those of the known
@@ -22,7 +27,8 @@ namespace elrom::methods {
 /// What screening, banding and search decided for one field.
 struct NetworkPlan {
   std::vector<networks::Band> bands;
-  std::vector<networks::Hyperparameters> hyperparameters;  ///< of each band
+  /// Of each band, the best and those nearly as good; its builds take them in turn.
+  std::vector<std::vector<networks::Hyperparameters>> hyperparameters;
   networks::ScreeningResult screening;
 };
 
@@ -39,7 +45,7 @@ class NetworksMethod final : public Method {
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const override;
   /// Bands and hyperparameters are those of all cases in the folds; the networks of a fold have not seen its
-  /// cases. At most two builds a band.
+  /// cases. Not all builds of a band.
   [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const Folds& folds,
                                       std::span<const std::size_t> wanted,
                                       const FitContext& context) const override;
@@ -58,14 +64,24 @@ class NetworksMethod final : public Method {
                                                       std::span<const std::size_t> cases,
                                                       const FitContext& context) const;
 
+  /// Columns of the field for each column of a plan's bands.
+  [[nodiscard]] std::size_t columns_each(const field::FieldData& data) const;
+
  private:
+  /// What networks learn of a field: all of it, or its symmetric part.
+  class Learned;
+  [[nodiscard]] bool has_asymmetry(const field::FieldData& data) const;
   [[nodiscard]] networks::RecordSource screened_records(const field::FieldData& data,
                                                         std::span<const std::size_t> cases,
                                                         const FitContext& context) const;
   /// Records of some cases, and of those of them that were known.
   struct Records;
-  [[nodiscard]] NetworkPlan plan(const field::FieldData& data, std::span<const std::size_t> cases,
-                                 const networks::RecordSource& records, const FitContext& context) const;
+  [[nodiscard]] networks::ScreeningResult screen_learned(const field::FieldData& data,
+                                                         std::span<const std::size_t> cases,
+                                                         const FitContext& context) const;
+  [[nodiscard]] NetworkPlan plan_learned(const field::FieldData& data, std::span<const std::size_t> cases,
+                                         const networks::RecordSource& records,
+                                         const FitContext& context) const;
   [[nodiscard]] networks::TrainingResult train(const networks::BuildStage& stage,
                                                const FitContext& context) const;
   [[nodiscard]] std::vector<model::Submodel> build(const field::FieldData& data, const NetworkPlan& plan,
@@ -83,6 +99,7 @@ class NetworksMethod final : public Method {
   const io::StageCache* cache_;
   io::StageCache no_cache_;
   networks::TrialStore* trials_;
+  std::unique_ptr<Method> asymmetry_;
   std::map<std::string, NetworkPlan> kept_;
 };
 

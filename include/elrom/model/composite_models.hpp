@@ -8,6 +8,7 @@
 #include "elrom/field/symmetry.hpp"
 #include "elrom/model/feature_map.hpp"
 #include "elrom/model/field_model.hpp"
+#include "elrom/model/symmetry_fold.hpp"
 
 namespace elrom::model {
 
@@ -110,6 +111,42 @@ class MirrorModel final : public FieldModel {
 
   std::shared_ptr<const FieldModel> model_;
   std::vector<Image> images_;
+};
+
+/// A mirror-symmetric field: its symmetric part from a model of one column of each orbit, which is asked with
+/// the symmetric parts of the inputs, and its asymmetry from another model. Their spreads add up.
+/// Thread rule: as above.
+class UnfoldedModel final : public FieldModel {
+ public:
+  /// @param symmetric part of each input, as many as the model takes
+  /// @param fold of the mesh, the symmetric class first; empty: the model has all columns
+  /// @param asymmetry in all columns; nullptr: none
+  /// @throws InputError when these do not fit together
+  UnfoldedModel(FeatureMap symmetric, SymmetryFold fold, std::shared_ptr<const FieldModel> model,
+                std::shared_ptr<const FieldModel> asymmetry, const std::string& where = "memory");
+
+  /// That of the symmetric part: people ask how the answer was found.
+  [[nodiscard]] std::string kind() const override { return model_->kind(); }
+  [[nodiscard]] std::size_t n_inputs() const override { return symmetric_.n_inputs(); }
+  [[nodiscard]] std::size_t n_planes() const override { return model_->n_planes(); }
+  [[nodiscard]] std::size_t n_columns() const override {
+    return fold_.empty() ? model_->n_columns() : fold_.n_columns();
+  }
+  void predict(const Query& query, std::span<float> values, std::span<float> spread,
+               Workspace& workspace) const override;
+  void save(io::TensorFile& file, const std::string& prefix) const override;
+  [[nodiscard]] static std::unique_ptr<FieldModel> load(const io::TensorFile& file, const std::string& prefix,
+                                                        const Wanted& wanted);
+  [[nodiscard]] const std::shared_ptr<const FieldModel>& model() const { return model_; }
+  [[nodiscard]] const SymmetryFold& fold() const { return fold_; }
+
+ private:
+  void predict_symmetric(const Query& query, std::span<float> values, std::span<float> spread,
+                         Workspace& workspace) const;
+
+  FeatureMap symmetric_;
+  SymmetryFold fold_;
+  std::shared_ptr<const FieldModel> model_, asymmetry_;
 };
 
 }  // namespace elrom::model

@@ -29,6 +29,9 @@ class SymmetryFold {
   [[nodiscard]] std::span<const std::int32_t> stored_columns() const { return first_; }
   [[nodiscard]] std::size_t n_classes() const { return sign_.size() == 0 ? 0 : sign_.shape()[0]; }
 
+  /// All columns of each orbit, ascending.
+  [[nodiscard]] std::vector<std::vector<std::size_t>> orbits() const;
+
   /// The stored column of each orbit, out of a mode's plane.
   /// @param column (n_columns) @param stored (n_orbits)
   void pick(std::span<const float> column, std::span<float> stored) const;

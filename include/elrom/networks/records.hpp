@@ -20,7 +20,6 @@ struct RecordOptions {
   model::PlaneEncodingKind encoding = model::PlaneEncodingKind::index;
   model::TransformKind transform = model::TransformKind::none;
   bool scale_cells = false;  ///< targets standardised cell by cell instead of column by column
-  bool mirrors = false;      ///< mirror images of the training records are training records too
   Relevance relevance = Relevance::none;
 };
 
@@ -32,7 +31,7 @@ struct RecordSet {
   ScreeningData records;  ///< inputs: scaled boundary conditions, then the plane's encoding
 };
 
-/// @param part (n_cases * n_planes), case by case. Scalers see cases with a training record only.
+/// @param part (n_cases * n_planes), case by case: what is searched by. Builds have parts of their own
 /// @param scaled_by the cases that scalers see, ascending; empty: all
 [[nodiscard]] RecordSet make_records(const field::FieldRows& data, const std::vector<Part>& part,
                                      const RecordOptions& options,
@@ -55,6 +54,8 @@ class RecordSource {
   /// @param data must outlive it
   RecordSource(const field::FieldData& data, std::span<const std::size_t> cases, RecordRecipe recipe);
   [[nodiscard]] const RecordSet& get() const;
+  /// Of every record in one of a band's builds (build_parts()).
+  [[nodiscard]] std::vector<Part> parts_of_build(BuildNumber number) const;
   /// Of the data and the recipe.
   [[nodiscard]] const std::string& key() const { return key_; }
 
@@ -67,8 +68,12 @@ class RecordSource {
 };
 
 /// Records and columns of one band; with a mask, records of
-/// planes that the band does not answer for are left out.
-[[nodiscard]] TrainingProblem make_problem(const ScreeningData& records, const Band& band);
+/// planes that the band does not answer for are left out. @param part of each record
+[[nodiscard]] TrainingProblem make_problem(const ScreeningData& records, const Band& band,
+                                           std::span<const Part> part);
+[[nodiscard]] inline TrainingProblem make_problem(const ScreeningData& records, const Band& band) {
+  return make_problem(records, band, records.part);
+}
 
 /// How much each standardised input moves the field's principal components: 1 for the strongest input, at
 /// least 0.1; empty for none.

@@ -100,6 +100,9 @@ using SearchContext = SearchContextOf<Hyperparameters>;
 template <class H>
 struct SearchResultOf {
   H best;
+  /// Whatever comes within a tenth of the best error, and the best, in the order of their keys. Which of these
+  /// is the best is chance; the set of them stands where data change in a last bit.
+  std::vector<H> near_best;
   double validation_mse = 0;       ///< mean over the seeds that confirmed it, or of its one trial
   std::vector<TrialOf<H>> trials;  ///< all, in order; confirmations (i_seed > 0) at the end
   std::size_t n_replayed = 0;      ///< trials taken from the store
@@ -149,7 +152,8 @@ template <class H, class Settings>
       .log = context.log,
       .stop = context.stop};
   const auto found = untyped.run();
-  SearchResultOf<H> result{from_values<H>(found.best), found.validation_mse, {}, found.n_replayed};
+  SearchResultOf<H> result{from_values<H>(found.best), {}, found.validation_mse, {}, found.n_replayed};
+  for (const auto& values : found.near_best) result.near_best.push_back(from_values<H>(values));
   for (const auto& trial : found.trials) result.trials.push_back(typed<H>(trial));
   return result;
 }

@@ -60,7 +60,7 @@ struct SearchSettings {
 };
 
 struct FitSettings {
-  int builds = 5;
+  int builds = 5;                ///< each stops on a fold of cases of its own
   std::string combine = "mean";  ///< "mean" | "best" (the source)
   int max_epochs = 200;
   int patience = 20;
@@ -70,9 +70,9 @@ struct NetworkSettings {
   std::string plane_encoding = "fourier";  ///< "index" (the source) | "fourier" | "one_hot"
   std::string activation = "relu";
   std::string targets = "column";  ///< "column" (eq. 6.1) | "cell": mean and scale of every cell on its own
-  int epoch_records = 12288;       ///< of one epoch at most, about what 64 cases have; 0: all
-  bool mirrors = true;   ///< train on mirror images too: about 10 % less error, four times the records
-  bool average = false;  ///< average the answers for a case and its mirror images
+  int epoch_records = 12288;       ///< of one epoch at most, about what 190 cases have; 0: all
+  bool mirrors = true;             ///< learn the symmetric part over its scale, on one column of each orbit
+  bool average = false;  ///< average the answers for a case and its mirror images (without mirrors above)
   std::string relevance = "gp";  ///< inputs scaled by "gp": length scales | "linear": a ridge fit | "none"
   std::map<std::string, std::string> transform;  ///< field -> none (where not named) | log | asinh
 };

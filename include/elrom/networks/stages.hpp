@@ -35,6 +35,7 @@ struct FieldSettings {
   FitSettings fit;
   int epoch_records = 0;
   bool average = false;
+  bool symmetric = false;  ///< on one column of each orbit
 };
 /// What a stage would not read (the closed-form screen's settings beside
 /// networks, ranges that are not searched) is at its default.
@@ -51,10 +52,10 @@ struct ScreenStage {
   [[nodiscard]] io::TensorFile compute(const StageContext& context) const;
 };
 
-/// A band's best hyperparameters. Read the file with hyperparameters_of().
+/// A band's best hyperparameters and those nearly as good. Read the file with hyperparameters_of().
 struct SearchStage {
   static constexpr const char* stage = "search";
-  static constexpr int version = 1;
+  static constexpr int version = 2;
   std::string field;
   const RecordSource* records;
   Band band;
@@ -69,9 +70,10 @@ struct SearchStage {
 /// One network of a band. Read the file with training_of().
 struct BuildStage {
   static constexpr const char* stage = "build";
-  static constexpr int version = 1;
+  static constexpr int version = 2;
   std::string name;  ///< for warnings: field, band and number
   const RecordSource* records;
+  BuildNumber number;  ///< which records stop it
   Band band;
   Hyperparameters hyperparameters;
   TrainingBudget budget;

@@ -44,6 +44,7 @@ struct FieldOutcome {
   std::string field, method;
   double cross_validated_nrmse = 0;   ///< against the training mean, 1 = no skill
   std::vector<networks::Band> bands;  ///< screen and search only
+  std::size_t columns_each = 1;       ///< of the field, for each column of a band
 };
 
 /// What became of a model that was made for the study.
