@@ -98,6 +98,19 @@ TEST(SymmetricPart, TheScaleIsThatOfTheCasesItWasGiven) {
   EXPECT_EQ(after.data().cases->inputs, before.data().cases->inputs);
 }
 
+TEST(SymmetricPart, WhereMirrorsKeepAColumnItHasAllColumns) {
+  field::CaseSet odd = test::toy_cases(20);
+  odd.mesh = field::make_furnace_mesh({}, 3, 6, 8);
+  odd.mirrors = {field::resolve({"front-rear", 'x', {{"*_front_*", "*_rear_*"}}, {}}, odd.schema, odd.mesh)};
+  const field::FieldData data = test::toy_field(odd, 0.3);
+
+  const SymmetricPart part(data, math::all_rows(20), {});
+
+  EXPECT_EQ(part.orbit_size(), 1U);
+  ASSERT_EQ(part.data().values.cols(), data.values.cols());
+  EXPECT_TRUE(unfolded(part, data, 7).isApprox(mean_of_images(data, 7), 1e-5F));
+}
+
 TEST(SymmetricPart, WithoutMirrorsItIsTheFieldOverItsScale) {
   const field::CaseSet cases = test::toy_cases(20, false);
   const field::FieldData data = test::toy_field(cases, 0.3);
