@@ -270,6 +270,22 @@ TEST(Auto, ACandidateThatDivergesOnlyLoses) {
   EXPECT_ERROR(NumericalError, "it diverged", contest.run({&broken}));
 }
 
+TEST(Auto, LaterCandidatesAreToldWhatTheFirstOneSaidOfTheFolds) {
+  Contest contest;
+  const MatrixF errors = noise(contest.data, "first", 0.1);
+  const Fake broken("broken", {}), first("first", errors), second("second", noise(contest.data, "a", 0.1)),
+      third("third", noise(contest.data, "b", 0.1));
+
+  (void)contest.run({&broken, &first, &second, &third});
+
+  EXPECT_FALSE(first.known.has_value());
+  ASSERT_TRUE(second.known.has_value());
+  EXPECT_EQ(second.known->key, first.key(contest.data.info.name));
+  EXPECT_TRUE(second.known->values.isApprox(contest.data.values - errors));
+  ASSERT_TRUE(third.known.has_value());
+  EXPECT_EQ(third.known->key, second.known->key);
+}
+
 TEST(Auto, ANanNeverWins) {
   Contest contest;
   MatrixF errors = MatrixF::Zero(10, contest.data.values.cols());

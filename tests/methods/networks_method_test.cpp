@@ -8,6 +8,7 @@
 
 #include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
+#include "elrom/methods/kernel_method.hpp"
 #include "elrom/model/composite_models.hpp"
 #include "fundamental_domain.hpp"
 #include "support/random_network.hpp"
@@ -185,6 +186,30 @@ const model::BandedNetworks& networks_of(const model::FieldModel& model) {
   if (const auto* scaled = dynamic_cast<const model::ScaledModel*>(&model))
     return networks_of(*scaled->model());
   return dynamic_cast<const model::BandedNetworks&>(model);
+}
+
+TEST_F(Networks, TheirAsymmetryInFoldsIsTheKernels) {
+  const NetworksMethod method(small_settings(), trainer);
+  const auto folds = load_grouped_folds(cases.loads, math::all_rows(20), 4);
+  const auto kernel = make_kernel_method();
+  const FoldPredictions known{kernel->key(data.info.name), kernel->cross_predict(data, folds, {})},
+      other{"other", known.values};
+  auto doubled = known;
+  doubled.values *= 2;
+
+  const MatrixF alone = method.cross_predict(data, folds, {}),
+                told = method.cross_predict(data, folds, {.known = &known}),
+                told_double = method.cross_predict(data, folds, {.known = &doubled}),
+                told_other = method.cross_predict(data, folds, {.known = &other});
+
+  EXPECT_TRUE(told.isApprox(alone, 1e-5F));
+  EXPECT_EQ(told_other, alone) << "of another method";
+  EXPECT_FALSE(told_double.isApprox(alone, 1e-2F)) << "it is taken from there";
+  const FundamentalDomain domain(cases, data.info.parity, symmetry_classes(2));
+  const auto symmetric = [&](const MatrixF& values) {
+    return domain.project(values, math::all_rows(20), 0, 1);
+  };
+  EXPECT_TRUE(symmetric(told_double).isApprox(symmetric(alone), 1e-5F)) << "and nothing else";
 }
 
 TEST_F(Networks, AWarmStartGoesOnFromTheNetworkOfTheKnownCases) {

@@ -1,6 +1,7 @@
 #pragma once
 // A method whose cross-validated errors are given, and error patterns for it.
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,7 +28,9 @@ class FakeMethod final : public methods::Method {
   }
   [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const methods::Folds& folds,
                                       std::span<const std::size_t> wanted,
-                                      const methods::FitContext&) const override {
+                                      const methods::FitContext& context) const override {
+    known.reset();
+    if (context.known != nullptr) known = *context.known;
     if (errors_.size() == 0) throw NumericalError("it diverged");
     MatrixF predictions = MatrixF::Zero(data.values.rows(), data.values.cols());
     for (const std::size_t k : wanted) {
@@ -38,6 +41,8 @@ class FakeMethod final : public methods::Method {
     }
     return predictions;
   }
+
+  mutable std::optional<methods::FoldPredictions> known;  ///< what predict_folds() was told last
 
  private:
   std::string name_;

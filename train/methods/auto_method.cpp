@@ -84,8 +84,9 @@ class Contest {
         fold_of_(fold_of_each(cases, folds)),
         variation_(variation_of_columns(data, cases)) {}
 
-  void run(const FitContext& context) {
+  void run(FitContext context) {
     std::exception_ptr first;
+    FoldPredictions known;
     for (const Method* method : methods_) {
       CandidateScore score{.name = method->name(), .nrmse = std::numeric_limits<double>::quiet_NaN()};
       try {
@@ -94,6 +95,10 @@ class Contest {
         if (tried.n_folds < folds_.size()) {
           score.left_after = tried.n_folds;
         } else {
+          if (standing_.empty()) {
+            known = {method->key(data_.info.name), std::move(tried.predictions)};
+            context.known = &known;
+          }
           standing_.push_back(scores_.size());
           errors_.push_back(std::move(tried.errors));
           sum_products();
@@ -146,9 +151,10 @@ class Contest {
     MatrixF errors;                 // (n_cases, n_cells), 0 where it was not tried
     std::vector<std::size_t> rows;  // of errors that it was tried in
     std::size_t n_folds = 0;
+    MatrixF predictions;  // of the folds that it was tried in last
   };
   [[nodiscard]] Tried race(const Method& method, const FitContext& context) const {
-    Tried tried{MatrixF::Zero(static_cast<Index>(cases_.size()), data_.values.cols()), {}, 0};
+    Tried tried{MatrixF::Zero(static_cast<Index>(cases_.size()), data_.values.cols()), {}, 0, {}};
     if (errors_.empty()) {
       try_in(method, math::all_rows(folds_.size()), tried, context);
       return tried;
@@ -161,11 +167,11 @@ class Contest {
   }
   void try_in(const Method& method, std::span<const std::size_t> wanted, Tried& tried,
               const FitContext& context) const {
-    const MatrixF predictions = method.predict_folds(data_, folds_, wanted, context);
+    tried.predictions = method.predict_folds(data_, folds_, wanted, context);
     for (std::size_t i = 0; i < cases_.size(); ++i) {
       if (std::ranges::find(wanted, fold_of_[i]) == wanted.end()) continue;
       const auto row = static_cast<Index>(cases_[i]);
-      tried.errors.row(static_cast<Index>(i)) = data_.values.row(row) - predictions.row(row);
+      tried.errors.row(static_cast<Index>(i)) = data_.values.row(row) - tried.predictions.row(row);
       tried.rows.push_back(i);
     }
     if (!tried.errors.allFinite()) throw NumericalError(method.name() + ": predictions are not finite");

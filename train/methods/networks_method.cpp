@@ -7,6 +7,7 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
 #include "elrom/base/parallel.hpp"
+#include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/kernel_method.hpp"
 #include "elrom/model/composite_models.hpp"
@@ -86,6 +87,7 @@ NetworksMethod::NetworksMethod(networks::Settings settings, std::shared_ptr<cons
       trainer_(std::move(trainer)),
       cache_(cache),
       trials_(trials),
+      kernel_(make_kernel_method()),
       asymmetry_(make_kernel_method({.symmetric = false})) {
   if (cache_ == nullptr) cache_ = &no_cache_;
 }
@@ -306,6 +308,20 @@ std::unique_ptr<model::FieldModel> NetworksMethod::fit(const field::FieldData& d
                        has_asymmetry(data) ? asymmetry_->fit(data, cases, context) : nullptr);
 }
 
+MatrixF NetworksMethod::asymmetry_in_folds(const field::FieldData& data, const Folds& folds,
+                                           std::span<const std::size_t> wanted,
+                                           const FitContext& context) const {
+  if (context.known == nullptr || context.known->key != kernel_->key(data.info.name))
+    return asymmetry_->predict_folds(data, folds, wanted, context);
+  const MatrixF& whole = context.known->values;
+  const FundamentalDomain domain(*data.cases, data.info.parity,
+                                 symmetry_classes(data.cases->mirrors.size()));
+  const auto rows = math::all_rows(static_cast<std::size_t>(whole.rows()));
+  MatrixF symmetric = MatrixF::Zero(whole.rows(), whole.cols());
+  domain.add(0, domain.project(whole, rows, 0, context.n_threads), symmetric, context.n_threads);
+  return whole - symmetric;
+}
+
 MatrixF NetworksMethod::predict_folds(const field::FieldData& data, const Folds& folds,
                                       std::span<const std::size_t> wanted, const FitContext& context) const {
   const auto rows = rows_of(folds);
@@ -313,7 +329,7 @@ MatrixF NetworksMethod::predict_folds(const field::FieldData& data, const Folds&
   const auto cold = without_warm_start(context);
   const auto found = plan(data, known, cold);
   const auto own = settings_of(data);
-  MatrixF predicted = has_asymmetry(data) ? asymmetry_->predict_folds(data, folds, wanted, context)
+  MatrixF predicted = has_asymmetry(data) ? asymmetry_in_folds(data, folds, wanted, context)
                                           : MatrixF::Zero(data.values.rows(), data.values.cols());
   std::atomic<std::int64_t> done{0};
   const auto total = static_cast<std::int64_t>(wanted.size());

@@ -15,7 +15,7 @@ namespace elrom::methods {
 /// Thread rule: const use from any thread.
 class SymmetricPart {
  public:
-  /// @param data of all its cases; must outlive the part
+  /// @param data of all its cases; the part keeps what it needs of it
   /// @param cases that the scale is learned from, as by the kernel method
   SymmetricPart(const field::FieldData& data, std::span<const std::size_t> cases, const FitContext& context);
   SymmetricPart(const SymmetricPart&) = delete;

@@ -5,47 +5,54 @@
 namespace elrom::networks {
 namespace {
 
-// Sixteen floats as the compiler's own vector: one register
-// with AVX-512, two with AVX2, plain code elsewhere.
-typedef float Vector __attribute__((vector_size(64), may_alias));
+// Register tile for the instruction set: `tile` rows times n_units accumulators, with room for the operands.
+// Wider vectors than the processor's would be taken apart through memory, at a tenth of the speed.
+#if defined(__AVX512F__)
+constexpr std::size_t vector_floats = 16, n_units = 4;
+#elif defined(__AVX__)
+constexpr std::size_t vector_floats = 8, n_units = 2;
+#else
+constexpr std::size_t vector_floats = 4, n_units = 2;
+#endif
+constexpr std::size_t n_parts = n_lanes / vector_floats;  // vectors of a Lane16
+static_assert(n_lanes % vector_floats == 0 && tile % n_units == 0);
+
+typedef float Vector __attribute__((vector_size(vector_floats * sizeof(float)), may_alias));
 
 const Vector* vectors(const Lane16* lanes) { return reinterpret_cast<const Vector*>(lanes); }
 Vector* vectors(Lane16* lanes) { return reinterpret_cast<Vector*>(lanes); }
 
 constexpr std::size_t padded(std::size_t n) { return (n + tile - 1) / tile * tile; }
 
-// sum[i][j] = sum_k left[i * left_stride_i + k * left_stride_k] * right[k * right_stride + j]: a 4 x 4 tile
-// held in registers, the core of both products.
+// sum[i][m] = sum_k left[i * left_stride_i + k * left_stride_k] * right[k * right_stride + m], of one part of
+// the lanes: held in registers, the core of both products.
 inline void multiply_tile(const float* left, std::size_t left_stride_i, std::size_t left_stride_k,
                           const Vector* right, std::size_t right_stride, std::size_t n,
-                          Vector (&sum)[tile][tile]) {
+                          Vector (&sum)[tile][n_units]) {
   for (auto& row : sum)
     for (auto& value : row) value = Vector{};
-  for (std::size_t k = 0; k < n; ++k, right += right_stride, left += left_stride_k) {
-    const Vector r0 = right[0], r1 = right[1], r2 = right[2], r3 = right[3];
+  for (std::size_t k = 0; k < n; ++k, right += right_stride * n_parts, left += left_stride_k) {
 #pragma GCC unroll 4
     for (std::size_t i = 0; i < tile; ++i) {
       const float l = left[i * left_stride_i];
-      sum[i][0] += l * r0;
-      sum[i][1] += l * r1;
-      sum[i][2] += l * r2;
-      sum[i][3] += l * r3;
+#pragma GCC unroll 4
+      for (std::size_t m = 0; m < n_units; ++m) sum[i][m] += l * right[m * n_parts];
     }
   }
 }
 
 // activations <- (activation > 0) * error, the gradient at the hidden units but for v; returns sum_r error *
-// activation in v_gradient.
+// activation in v_gradient. One part of the lanes.
 void gate(std::size_t n_rows, std::size_t u, Vector* activations, const Vector* error, Vector* v_gradient) {
   const Vector zero{};
-  for (std::size_t j = 0; j < u; ++j) v_gradient[j] = zero;
+  for (std::size_t j = 0; j < u; ++j) v_gradient[j * n_parts] = zero;
   for (std::size_t r = 0; r < n_rows; ++r) {
-    Vector* row = activations + r * u;
-    const Vector e = error[r];
+    Vector* row = activations + r * u * n_parts;
+    const Vector e = error[r * n_parts];
     for (std::size_t j = 0; j < u; ++j) {
-      const Vector a = row[j];
-      v_gradient[j] += e * a;
-      row[j] = a > zero ? e : zero;
+      Vector& a = row[j * n_parts];
+      v_gradient[j * n_parts] += e * a;
+      a = a > zero ? e : zero;
     }
   }
 }
@@ -74,44 +81,50 @@ MatrixF pad_inputs(const MatrixF& inputs, const LaneShape& shape) {
 void lanes_forward(const LaneShape& shape, const LaneBuffer& parameters, const float* x, std::size_t n_rows,
                    Lane16* activations, Lane16* y) {
   const std::size_t k = shape.k, u = shape.u;
-  const Vector *w = vectors(parameters.data()), *v = w + k * u, *c = v + u;
   const Vector zero{};
-  for (std::size_t r = 0; r < n_rows; r += tile) {
-    Vector output[tile] = {*c, *c, *c, *c};
-    for (std::size_t j = 0; j < u; j += tile) {
-      Vector sum[tile][tile];
-      multiply_tile(x + r * k, k, 1, w + j, u, k, sum);
+  for (std::size_t part = 0; part < n_parts; ++part) {
+    const Vector *w = vectors(parameters.data()) + part, *v = w + k * u * n_parts, *c = v + u * n_parts;
+    Vector *hidden = vectors(activations) + part, *out = vectors(y) + part;
+    for (std::size_t r = 0; r < n_rows; r += tile) {
+      Vector output[tile] = {*c, *c, *c, *c};
+      for (std::size_t j = 0; j < u; j += n_units) {
+        Vector sum[tile][n_units];
+        multiply_tile(x + r * k, k, 1, w + j * n_parts, u, k, sum);
 #pragma GCC unroll 4
-      for (std::size_t i = 0; i < tile; ++i) {
+        for (std::size_t i = 0; i < tile; ++i) {
 #pragma GCC unroll 4
-        for (std::size_t m = 0; m < tile; ++m) {
-          const Vector a = sum[i][m] > zero ? sum[i][m] : zero;
-          vectors(activations)[(r + i) * u + j + m] = a;
-          output[i] += a * v[j + m];
+          for (std::size_t m = 0; m < n_units; ++m) {
+            const Vector a = sum[i][m] > zero ? sum[i][m] : zero;
+            hidden[((r + i) * u + j + m) * n_parts] = a;
+            output[i] += a * v[(j + m) * n_parts];
+          }
         }
       }
+      for (std::size_t i = 0; i < tile; ++i) out[(r + i) * n_parts] = output[i];
     }
-    for (std::size_t i = 0; i < tile; ++i) vectors(y)[r + i] = output[i];
   }
 }
 
 void lanes_backward(const LaneShape& shape, const LaneBuffer& parameters, const float* x, std::size_t n_rows,
                     Lane16* activations, const Lane16* error, LaneBuffer& gradient) {
   const std::size_t k = shape.k, u = shape.u;
-  const Vector* v = vectors(parameters.data()) + k * u;
-  Vector *w_gradient = vectors(gradient.data()), *v_gradient = w_gradient + k * u,
-         *c_gradient = v_gradient + u;
-  gate(n_rows, u, vectors(activations), vectors(error), v_gradient);
-  *c_gradient = Vector{};
-  for (std::size_t r = 0; r < n_rows; ++r) *c_gradient += vectors(error)[r];
-  for (std::size_t i_k = 0; i_k < k; i_k += tile) {
-    for (std::size_t j = 0; j < u; j += tile) {
-      Vector sum[tile][tile];
-      multiply_tile(x + i_k, 1, k, vectors(activations) + j, u, n_rows, sum);
+  for (std::size_t part = 0; part < n_parts; ++part) {
+    const Vector *v = vectors(parameters.data()) + k * u * n_parts + part, *e = vectors(error) + part;
+    Vector *w_gradient = vectors(gradient.data()) + part, *v_gradient = w_gradient + k * u * n_parts,
+           *c_gradient = v_gradient + u * n_parts, *hidden = vectors(activations) + part;
+    gate(n_rows, u, hidden, e, v_gradient);
+    *c_gradient = Vector{};
+    for (std::size_t r = 0; r < n_rows; ++r) *c_gradient += e[r * n_parts];
+    for (std::size_t i_k = 0; i_k < k; i_k += tile) {
+      for (std::size_t j = 0; j < u; j += n_units) {
+        Vector sum[tile][n_units];
+        multiply_tile(x + i_k, 1, k, hidden + j * n_parts, u, n_rows, sum);
 #pragma GCC unroll 4
-      for (std::size_t i = 0; i < tile; ++i) {
+        for (std::size_t i = 0; i < tile; ++i) {
 #pragma GCC unroll 4
-        for (std::size_t m = 0; m < tile; ++m) w_gradient[(i_k + i) * u + j + m] = sum[i][m] * v[j + m];
+          for (std::size_t m = 0; m < n_units; ++m)
+            w_gradient[((i_k + i) * u + j + m) * n_parts] = sum[i][m] * v[(j + m) * n_parts];
+        }
       }
     }
   }

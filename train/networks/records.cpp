@@ -115,14 +115,13 @@ void fill(const ScreeningData& records, const Band& band, std::span<const std::s
   targets.resize(n, n_out);
   if (!band.mask.empty()) weights.resize(n, n_out);
   for (Eigen::Index r = 0; r < n; ++r) {
-    const auto row = static_cast<Eigen::Index>(rows[static_cast<std::size_t>(r)]);
-    inputs.row(r) = records.inputs.row(row);
+    const std::size_t row = rows[static_cast<std::size_t>(r)];
+    const auto record = static_cast<Eigen::Index>(row);
+    const auto plane = records.plane[row];
+    inputs.row(r) = records.inputs.row(record);
     for (Eigen::Index c = 0; c < n_out; ++c) {
-      targets(r, c) = records.targets(row, band.columns[static_cast<std::size_t>(c)]);
-      if (!band.mask.empty()) {
-        weights(r, c) =
-            band.mask[static_cast<std::size_t>(records.plane[rows[static_cast<std::size_t>(r)]] * n_out + c)];
-      }
+      targets(r, c) = records.targets(record, band.columns[static_cast<std::size_t>(c)]);
+      if (!band.mask.empty()) weights(r, c) = band.mask[static_cast<std::size_t>(plane * n_out + c)];
     }
   }
 }

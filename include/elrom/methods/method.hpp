@@ -16,6 +16,12 @@
 
 namespace elrom::methods {
 
+/// Predictions of all cases in some folds, as Method::cross_predict() gives them, and the method's key.
+struct FoldPredictions {
+  std::string key;
+  MatrixF values;
+};
+
 struct FitContext {
   base::Seed seed{1};
   int n_threads = 1;
@@ -23,6 +29,8 @@ struct FitContext {
   std::stop_token stop;
   const networks::Workers* workers = nullptr;  ///< other processes that train too; may be missing
   const WarmStart* warm = nullptr;             ///< where a fit may begin; nullptr: from nothing
+  /// For predict_folds(): what another method said of the same folds, with the same warm start; may be missing
+  const FoldPredictions* known = nullptr;
 
   /// Trainings that run side by side: each takes one thread, here or in another process.
   [[nodiscard]] int n_trainings() const { return workers == nullptr ? n_threads : workers->n_units(); }

@@ -4,14 +4,14 @@
 // so that all cases build some of them.
 //
 // With networks.mirrors they learn the symmetric part of the field over its scale, on one column of each
-// orbit of the mirrors; scale and asymmetry are learned as by the kernel method, from all cases. Bands are
-// then of those columns.
+// orbit of the mirrors; scale and asymmetry are learned as by the kernel method. Bands are then of those
+// columns.
 //
-// With a warm start the plan is that of the cases known before, and every network of the model goes on from
-// the one that was trained on those. Cross-validation trains nothing: its networks are those of the known
-// cases, and a further case is predicted by those that did not see its neighbours in load either. They lack
-// the further cases, so that the error is a little too large, never too small. What was known before is
-// taken from the cache, or made again.
+// With a warm start plan and scale are those of the cases known before, the asymmetry is learned from all,
+// and every network of the model goes on from the one that was trained on the known ones. Cross-validation
+// trains nothing: its networks are those of the known cases, and a further case is predicted by those that
+// did not see its neighbours in load either. They lack the further cases, so that the error is a little too
+// large, never too small. What was known before is taken from the cache, or made again.
 
 #include <memory>
 #include <string>
@@ -45,7 +45,8 @@ class NetworksMethod final : public Method {
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const override;
   /// Bands and hyperparameters are those of all cases in the folds; the networks of a fold have not seen its
-  /// cases. Not all builds of a band.
+  /// cases. Not all builds of a band. The asymmetry is taken from what the kernel method said of the folds,
+  /// where that is known.
   [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const Folds& folds,
                                       std::span<const std::size_t> wanted,
                                       const FitContext& context) const override;
@@ -71,6 +72,9 @@ class NetworksMethod final : public Method {
   /// What networks learn of a field: all of it, or its symmetric part.
   class Learned;
   [[nodiscard]] bool has_asymmetry(const field::FieldData& data) const;
+  [[nodiscard]] MatrixF asymmetry_in_folds(const field::FieldData& data, const Folds& folds,
+                                           std::span<const std::size_t> wanted,
+                                           const FitContext& context) const;
   [[nodiscard]] networks::RecordSource screened_records(const field::FieldData& data,
                                                         std::span<const std::size_t> cases,
                                                         const FitContext& context) const;
@@ -99,7 +103,7 @@ class NetworksMethod final : public Method {
   const io::StageCache* cache_;
   io::StageCache no_cache_;
   networks::TrialStore* trials_;
-  std::unique_ptr<Method> asymmetry_;
+  std::unique_ptr<Method> kernel_, asymmetry_;
   std::map<std::string, NetworkPlan> kept_;
 };
 
