@@ -132,6 +132,7 @@ class Workbench {
         "networks.plane_encoding=\"fourier\"",
         "networks.transform={}",
         "networks.targets=\"column\"",
+        "networks.schedule=\"constant\"",
         "networks.mirrors=false",
         "networks.average=false",
         "networks.relevance=\"none\"",
@@ -190,7 +191,9 @@ class Workbench {
     const auto log = networks({"networks.transform={solid_volume_fraction=\"log\"}"});
     const auto asinh = networks({"networks.transform={solid_volume_fraction=\"asinh\"}"});
     const std::string fraction = "solid_volume_fraction";
-    const std::vector<std::string> both{"networks.mirrors=true", "networks.relevance=\"gp\""};
+    const std::string cosine = "networks.schedule=\"cosine\"";
+    const std::vector<std::string> both{"networks.mirrors=true", "networks.relevance=\"gp\""},
+        defaults{both[0], both[1], cosine};
     return {
         {{{"reference", "2 x 64, Fourier planes, mean of the builds"},
           {"best", "best build instead of the mean", best_build_of},
@@ -204,12 +207,14 @@ class Workbench {
         {{{"relevance", "inputs scaled by a ridge fit"}}, networks({"networks.relevance=\"linear\""})},
         {{{"relevance_gp", "inputs scaled by a process's length scales"}},
          networks({"networks.relevance=\"gp\""})},
+        {{{"cosine", "a learning rate that falls by half a cosine"}}, networks({cosine})},
         {{{"decay", "weight decay 0.1"}}, networks({}, decay)},
         {{{"dropout", "dropout 0.1"}}, networks({}, [](H& h) { h.dropout = 0.1; })},
         {{{"mirrors", "the symmetric part over its scale, the kernel's asymmetry"}},
          networks({"networks.mirrors=true"})},
         {{{"mirrors_gp", "the same and length scales"}}, networks(both)},
-        {{{"all", "the same, length scales, weight decay, dropout"}},
+        {{{"defaults", "the same, length scales, a learning rate that falls"}}, networks(defaults)},
+        {{{"all", "the symmetric part, length scales, weight decay, dropout"}},
          networks(both,
                   [](H& h) {
                     h.weight_decay = 0.1;

@@ -27,5 +27,14 @@ TEST(EpochPart, IsAllOfThemWithoutALimitAndWhereTheyAreFew) {
   }
 }
 
+TEST(RateFactor, FallsByHalfACosine) {
+  const TrainingBudget budget{.max_epochs = 12, .anneal = true};
+  EXPECT_EQ(rate_factor(budget, 0), 1);
+  EXPECT_NEAR(rate_factor(budget, 4), 0.75, 1e-12);
+  EXPECT_NEAR(rate_factor(budget, 6), 0.5, 1e-12);
+  EXPECT_NEAR(rate_factor(budget, 11), 0.017, 1e-3);
+  EXPECT_EQ(rate_factor({.max_epochs = 12}, 11), 1);
+}
+
 }  // namespace
 }  // namespace elrom::networks

@@ -162,6 +162,7 @@ std::map<std::string, Effect> effects() {
           {"networks.activation", {"tanh", from_search}},
           {"networks.targets", {"cell", from_records}},
           {"networks.epoch_records", {"20", from_search}},
+          {"networks.schedule", {"constant", from_search}},
           {"networks.mirrors", {"false", from_records}},
           {"networks.average", {"true", networks}},
           {"networks.relevance", {"none", from_search}},

@@ -117,6 +117,20 @@ TEST(TorchTrainer, EarlyStoppingRestoresTheBestWeights) {
               1e-5 * *best);
 }
 
+TEST(TorchTrainer, AnnealedItEndsByEverSmallerSteps) {
+  const auto problem = smooth_problem(200, 0.3F);
+  const auto trainer = make_torch_trainer();
+  const auto jitter_at_the_end = [&](bool anneal) {
+    Recorder recorder;
+    (void)trainer->train(problem, usual, {.max_epochs = 40, .patience = 40, .anneal = anneal}, base::Seed(1),
+                         &recorder, {});
+    const auto& errors = recorder.errors;
+    return std::abs(errors[39] - errors[38]) + std::abs(errors[38] - errors[37]);
+  };
+
+  EXPECT_LT(jitter_at_the_end(true), 0.1 * jitter_at_the_end(false));
+}
+
 TEST(TorchTrainer, TheSameSeedGivesTheSameBitsOnAnyThread) {
   const auto problem = smooth_problem();
   const auto trainer = make_torch_trainer();
@@ -165,24 +179,25 @@ TEST(TorchTrainer, ResumedFromACheckpointItEndsWithTheSameBits) {
   const auto problem = smooth_problem();
   networks::Hyperparameters hyperparameters = usual;
   hyperparameters.dropout = 0.2;
+  const networks::TrainingBudget annealed{.max_epochs = 25, .patience = 25, .anneal = true};
   const test::TemporaryFolder folder;
   const auto checkpoint = folder / "build.checkpoint";
   const auto trainer = make_torch_trainer();
   Recorder straight_errors, resumed_errors;
   const auto straight =
-      trainer->train(problem, hyperparameters, {25, 25}, base::Seed(1), &straight_errors, {});
+      trainer->train(problem, hyperparameters, annealed, base::Seed(1), &straight_errors, {});
   std::stop_source source;
   Recorder stopper([&](int epoch) {
     if (epoch == 9) source.request_stop();
     return true;
   });
 
-  EXPECT_THROW((void)trainer->train(problem, hyperparameters, {25, 25}, base::Seed(1), &stopper,
+  EXPECT_THROW((void)trainer->train(problem, hyperparameters, annealed, base::Seed(1), &stopper,
                                     source.get_token(), checkpoint),
                Interrupted);
   ASSERT_TRUE(std::filesystem::exists(checkpoint));
   const auto resumed =
-      trainer->train(problem, hyperparameters, {25, 25}, base::Seed(1), &resumed_errors, {}, checkpoint);
+      trainer->train(problem, hyperparameters, annealed, base::Seed(1), &resumed_errors, {}, checkpoint);
 
   EXPECT_EQ(weights_of(straight.network), weights_of(resumed.network));
   EXPECT_EQ(straight_errors.errors, resumed_errors.errors) << "the monitor hears of the first epochs again";

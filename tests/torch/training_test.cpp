@@ -140,6 +140,21 @@ TEST(Training, EvaluationIsTheMeanOverTargetsThatCount) {
   EXPECT_NEAR(mse, expected, 1e-6 * expected);
 }
 
+TEST(Training, ARateFactorCountsForEveryStepOfItsEpoch) {
+  const auto problem = noisy_problem(false);
+  const networks::Hyperparameters whole{.learning_rate = 4e-3, .n_units = 8, .batch_size = 16},
+      half{.learning_rate = 2e-3, .n_units = 8, .batch_size = 16};
+  Training factored(problem, whole, base::Seed(9), {}), halved(problem, half, base::Seed(9), {});
+
+  ASSERT_TRUE(factored.run_epoch(0, 0.5) && halved.run_epoch());
+
+  EXPECT_TRUE(::torch::equal(factored.mlp().parameters(), halved.mlp().parameters()));
+  ASSERT_TRUE(factored.run_epoch(0, 0));
+  EXPECT_TRUE(::torch::equal(factored.mlp().parameters(), halved.mlp().parameters()));
+  ASSERT_TRUE(factored.run_epoch());
+  EXPECT_FALSE(::torch::equal(factored.mlp().parameters(), halved.mlp().parameters()));
+}
+
 TEST(Training, AnEpochStepsThroughNoMoreRecordsThanItMay) {
   const auto problem = noisy_problem(false);  // 40 records
   const networks::Hyperparameters hyperparameters{.n_layers = 1, .n_units = 4, .batch_size = 5};

@@ -217,6 +217,7 @@ NetworkPlan NetworksMethod::plan_learned(const field::FieldData& data, std::span
             .band = band,
             .settings = own.search,
             .epoch_records = own.epoch_records,
+            .anneal = own.anneal,
             .activation = own.activation,
             .trainer = trainer_.get(),
             .seed = context.seed.derive("search").derive(field).derive(band.name)};
@@ -255,7 +256,7 @@ std::vector<model::Submodel> NetworksMethod::build(const field::FieldData& data,
             .number = {i_build, static_cast<std::size_t>(own.fit.builds)},
             .band = band,
             .hyperparameters = plan.hyperparameters[i_band][i_build % plan.hyperparameters[i_band].size()],
-            .budget = {own.fit.max_epochs, own.fit.patience, own.epoch_records},
+            .budget = {own.fit.max_epochs, own.fit.patience, own.epoch_records, own.anneal},
             .trainer = trainer_.get(),
             .seed = context.seed.derive("fit").derive(field).derive(band.name).derive(i_build)};
         auto result = train(stage, context);
@@ -314,8 +315,7 @@ MatrixF NetworksMethod::asymmetry_in_folds(const field::FieldData& data, const F
   if (context.known == nullptr || context.known->key != kernel_->key(data.info.name))
     return asymmetry_->predict_folds(data, folds, wanted, context);
   const MatrixF& whole = context.known->values;
-  const FundamentalDomain domain(*data.cases, data.info.parity,
-                                 symmetry_classes(data.cases->mirrors.size()));
+  const FundamentalDomain domain(*data.cases, data.info.parity, symmetry_classes(data.cases->mirrors.size()));
   const auto rows = math::all_rows(static_cast<std::size_t>(whole.rows()));
   MatrixF symmetric = MatrixF::Zero(whole.rows(), whole.cols());
   domain.add(0, domain.project(whole, rows, 0, context.n_threads), symmetric, context.n_threads);

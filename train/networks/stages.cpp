@@ -55,6 +55,7 @@ FieldSettings settings_of_field(const Settings& settings, const std::string& fie
           .activation = model::activation_of(settings.networks.activation),
           .fit = settings.fit,
           .epoch_records = settings.networks.epoch_records,
+          .anneal = settings.networks.schedule == "cosine",
           .average = settings.networks.average && settings.symmetry.enabled,
           .symmetric = settings.networks.mirrors && settings.symmetry.enabled};
 }
@@ -73,7 +74,7 @@ io::TensorFile ScreenStage::compute(const StageContext& context) const {
 
 io::TensorFile SearchStage::compute(const StageContext& context) const {
   const auto problem = make_problem(records->get().records, band);
-  const TrainingBudget budget{settings.max_epochs, settings.patience, epoch_records};
+  const TrainingBudget budget{settings.max_epochs, settings.patience, epoch_records, anneal};
   const SearchContext search_context{.name = field + ", " + band.name,
                                      .digest = io::stage_key(*this),
                                      .seed = seed,

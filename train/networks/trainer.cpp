@@ -1,6 +1,8 @@
 #include "elrom/networks/trainer.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace elrom::networks {
 
@@ -14,6 +16,11 @@ MatrixF parameters_of(const model::Network& network) {
   }
   return Eigen::Map<const MatrixF>(values.data(), values.empty() ? 0 : 1,
                                    static_cast<Eigen::Index>(values.size()));
+}
+
+double rate_factor(const TrainingBudget& budget, int epoch) {
+  if (!budget.anneal) return 1;
+  return 0.5 * (1 + std::cos(std::numbers::pi * epoch / budget.max_epochs));
 }
 
 EpochPart epoch_part(std::size_t n_records, int most_records, std::size_t epoch) {

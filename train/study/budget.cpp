@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int fewest_folds = 2, some_folds = 4;
 constexpr double peers_beside = 4;  // a run with the simple peers, as a multiple of one with the kernel alone
-constexpr double standard_networks = 5;  // effort "standard" as a multiple of "quick", of networks alone
+constexpr double standard_networks = 3;  // effort "standard" as a multiple of "quick", of networks alone
 constexpr double margin = 0.85;          // share of the time that is planned with: other work comes and goes
 constexpr double hope = 2;    // of the cheapest that is left: what it makes is kept for a later run
 constexpr double sure = 0.5;  // of a level that nothing stands in for when it is not done
@@ -150,7 +150,7 @@ std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel
       {fmt::format("networks too, effort {}", settings.effort), settings, levels.back().seconds * multiple,
        model.networks_had_no_part
            ? "they had no part in the present model, which tried them: expect nothing of it"
-           : "on the shipped cases they cost several times the rest and lower the mean error by less than 1 %"});
+           : "on the shipped cases they cost as much as the rest and lower the mean error by less than 1 %"});
   return levels;
 }
 

@@ -154,6 +154,8 @@ io::SettingsTable<Settings> make_table() {
   t.whole(
       "networks.epoch_records", "records of an epoch at most, 0: all; the next epoch goes on with the others",
       [](auto& s) -> auto& { return s.networks.epoch_records; }, 0);
+  t.word("networks.schedule", "the learning rate falls to nothing by half a cosine, or stays (the source)",
+         [](auto& s) -> auto& { return s.networks.schedule; }, {"cosine", "constant"});
   t.flag(
       "networks.mirrors",
       "networks learn the symmetric part of a field over its scale, once for all mirror images",

@@ -50,7 +50,7 @@ class TrainCall {
     bool pruned = load_checkpoint(checkpoint_, digest_, training_) && !replay(monitor);
     while (!pruned && !finished()) {
       if (stop.stop_requested()) interrupt();
-      if (!training_.run_epoch(budget_.epoch_records)) {
+      if (!training_.run_epoch(budget_.epoch_records, rate_factor(budget_, progress().epoch))) {
         if (training_.progress().backed_off) return finish(false, true);
         training_.progress().backed_off = true;
         training_.restart(training_.progress().learning_rate * back_off);

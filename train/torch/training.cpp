@@ -110,7 +110,8 @@ void Training::step(std::span<const std::int64_t> rows) {
   mlp_.forward(pass);
   residual(pass, 2 / count);
   mlp_.backward(pass);
-  adam_.step(mlp_.parameters(), mlp_.gradient(), progress_.learning_rate, hyperparameters_.weight_decay);
+  adam_.step(mlp_.parameters(), mlp_.gradient(), rate_factor_ * progress_.learning_rate,
+             hyperparameters_.weight_decay);
 }
 
 double Training::evaluate() {
@@ -139,7 +140,8 @@ std::span<const std::int64_t> Training::next_records(int most_records) {
   return std::span(order_).subspan(part.first, part.size);
 }
 
-bool Training::run_epoch(int most_records) {
+bool Training::run_epoch(int most_records, double rate_factor) {
+  rate_factor_ = rate_factor;
   const auto records = next_records(most_records);
   dropout_random_ = base::Random(seed_.derive("dropout").derive(static_cast<std::uint64_t>(progress_.epoch)));
   const auto batch = static_cast<std::size_t>(hyperparameters_.batch_size);

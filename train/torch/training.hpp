@@ -28,8 +28,9 @@ class Training {
            base::Seed seed, Place place);
 
   /// Some training records (TrainingBudget::epoch_records) in a random order, every sweep over all of them in
-  /// its own, then an evaluation; keeps the best weights. @return false when a loss was not finite
-  bool run_epoch(int most_records = 0);
+  /// its own, then an evaluation; keeps the best weights. @param rate_factor of the learning rate
+  /// @return false when a loss was not finite
+  bool run_epoch(int most_records = 0, double rate_factor = 1);
   /// Back to the first weights, the problem's or the seed's, at another rate.
   void restart(double learning_rate);
   /// One step on the records `rows`; also what bench-step times.
@@ -58,6 +59,7 @@ class Training {
   ::torch::Tensor best_, sum_of_squares_;
   std::vector<Pass> train_passes_, evaluation_passes_;
   std::vector<std::int64_t> order_, all_rows_;
+  double rate_factor_ = 1;
   base::Random dropout_random_;
   Progress progress_;
 };

@@ -69,9 +69,10 @@ struct FitSettings {
 struct NetworkSettings {
   std::string plane_encoding = "fourier";  ///< "index" (the source) | "fourier" | "one_hot"
   std::string activation = "relu";
-  std::string targets = "column";  ///< "column" (eq. 6.1) | "cell": mean and scale of every cell on its own
-  int epoch_records = 12288;       ///< of one epoch at most, about what 190 cases have; 0: all
-  bool mirrors = true;             ///< learn the symmetric part over its scale, on one column of each orbit
+  std::string targets = "column";   ///< "column" (eq. 6.1) | "cell": mean and scale of every cell on its own
+  int epoch_records = 12288;        ///< of one epoch at most, about what 190 cases have; 0: all
+  std::string schedule = "cosine";  ///< of the learning rate: "cosine" | "constant" (the source)
+  bool mirrors = true;              ///< learn the symmetric part over its scale, on one column of each orbit
   bool average = false;  ///< average the answers for a case and its mirror images (without mirrors above)
   std::string relevance = "gp";  ///< inputs scaled by "gp": length scales | "linear": a ridge fit | "none"
   std::map<std::string, std::string> transform;  ///< field -> none (where not named) | log | asinh

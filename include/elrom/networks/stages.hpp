@@ -34,6 +34,7 @@ struct FieldSettings {
   model::Activation activation = model::Activation::relu;
   FitSettings fit;
   int epoch_records = 0;
+  bool anneal = false;
   bool average = false;
   bool symmetric = false;  ///< on one column of each orbit
 };
@@ -61,6 +62,7 @@ struct SearchStage {
   Band band;
   SearchSettings settings;
   int epoch_records;
+  bool anneal;
   model::Activation activation;
   const Trainer* trainer;
   base::Seed seed;

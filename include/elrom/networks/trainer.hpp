@@ -21,7 +21,11 @@ struct TrainingBudget {
   /// Training records of one epoch at most, 0: all of them. The next epoch goes on where it ended, so that
   /// none is left out: records that are many need no more steps than few do.
   int epoch_records = 0;
+  /// The learning rate falls to nothing by half a cosine over max_epochs (Loshchilov & Hutter 2017)
+  bool anneal = false;
 };
+/// Of the learning rate in an epoch (from 0).
+[[nodiscard]] double rate_factor(const TrainingBudget& budget, int epoch);
 
 /// The records that one epoch visits: a piece of a sweep over all of them in the sweep's own random order.
 struct EpochPart {

@@ -35,7 +35,7 @@ struct CostModel {
   int n_threads = 1;
   /// A run with networks at effort "quick", as a multiple of one without; of
   /// an earlier run of the study, else as on the shipped cases.
-  double networks = 3.5;
+  double networks = 2;
   bool networks_had_no_part = false;  ///< in the study's present model, which tried them
 };
 
