@@ -29,7 +29,7 @@ struct FitContext {
   std::stop_token stop;
   const networks::Workers* workers = nullptr;  ///< other processes that train too; may be missing
   const WarmStart* warm = nullptr;             ///< where a fit may begin; nullptr: from nothing
-  /// For predict_folds(): what another method said of the same folds, with the same warm start; may be missing
+  /// For predict_folds(): what another method said of these folds, with the same warm start; may be missing
   const FoldPredictions* known = nullptr;
 
   /// Trainings that run side by side: each takes one thread, here or in another process.
