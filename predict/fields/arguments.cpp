@@ -99,8 +99,9 @@ void add_selection_options(cli::App& app, Arguments& arguments, Texts& texts) {
   app.add_option("--region", texts.region,
                  "only cells with centres in x0:x1,y0:y1,z0:z1 [m]; a side may be empty (:,:,0:5)")
       ->type_name("BOX");
-  app.add_option("--builds", texts.builds,
-                 "mean: combine builds as trained; best: the best build alone, faster")
+  app.add_option(
+         "--builds", texts.builds,
+         "mean: combine builds as trained; best: one build alone, that of the least validation error, faster")
       ->check(cli::IsMember({"mean", "best"}))
       ->capture_default_str();
   app.add_option("--uncertainty", arguments.level,

@@ -1,5 +1,7 @@
 #include "elrom/model/composite_models.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,6 +26,11 @@ std::size_t count_of(const nlohmann::json& description, const std::string& key, 
                       .expected = "\"" + key + "\" between 1 and " + std::to_string(most_parts)});
   }
   return found->get<std::size_t>();
+}
+
+std::string size_text(const FieldModel& model) {
+  return fmt::format("{} inputs, {} planes, {} columns", model.n_inputs(), model.n_planes(),
+                     model.n_columns());
 }
 
 }  // namespace
@@ -335,8 +342,8 @@ UnfoldedModel::UnfoldedModel(FeatureMap symmetric, SymmetryFold fold, std::share
                      asymmetry_->n_columns() != n_columns())) {
     throw InputError({.what = "asymmetry of another size than the symmetric part",
                       .where = where,
-                      .found = std::to_string(asymmetry_->n_columns()) + " columns",
-                      .expected = std::to_string(n_columns())});
+                      .found = size_text(*asymmetry_),
+                      .expected = size_text(*this)});
   }
 }
 

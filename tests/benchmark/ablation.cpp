@@ -1,6 +1,6 @@
 // bench-ablation: what each option of the networks buys and costs on real cases. Rows differ from the
-// reference in one setting; behind them networks on POD coefficients, the source's own method as written,
-// and, to compare with, the kernel smoother and the best simple peer.
+// reference in one setting, or in those that they name; behind them networks on POD coefficients, the
+// source's own method, and, to compare with, the kernel smoother and the best simple peer.
 //
 // Error: root mean square relative to that of the training mean (1 = no skill), mean of the fields. "cross"
 // is over load-grouped folds of the training cases, by networks that did not see their fold, and is what
@@ -226,8 +226,8 @@ class Workbench {
         {{{"pod_mlp_mirrors", "trained on mirror images too"},
           {"pod_mlp_average", "and averaged over them at prediction", average_of}},
          pod([](auto& o) { o.mirrors = true; })},
-        {{{"source",
-           fmt::format("the source's method as written, {} trials a submodel", options_.source_trials)}},
+        {{{"source", fmt::format("screened, banded and searched as the source does, {} trials a submodel",
+                                 options_.source_trials)}},
          source()},
         {{{"kernel", "kernel smoother"}}, [](const std::string&) { return methods::make_kernel_method(); }},
         {{{"pod_rbf", "POD + RBF"}}, [](const std::string&) { return methods::make_peer("pod_rbf"); }},

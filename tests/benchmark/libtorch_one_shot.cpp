@@ -117,10 +117,11 @@ int run(const Options& options) {
     const auto model = reader.model(info.name);
     const auto* networks = dynamic_cast<const model::BandedNetworks*>(model.get());
     if (networks == nullptr)
-      throw InputError({.what = "field " + info.name + " is no networks model",
-                        .where = options.bundle,
-                        .found = model->kind(),
-                        .advice = "use the study's peers/networks.elrom"});
+      throw InputError(
+          {.what = "field " + info.name + " is no networks model",
+           .where = options.bundle,
+           .found = model->kind(),
+           .advice = "train with networks.mirrors=false, and use the study's peers/networks.elrom"});
     const Tensor field = predict(*networks, cases.front().values, options.best_only);
     out.write(reinterpret_cast<const char*>(field.data_ptr<float>()),
               static_cast<std::streamsize>(field.numel()) * static_cast<std::streamsize>(sizeof(float)));

@@ -315,6 +315,24 @@ TEST(KernelMethod, AnAsymmetryIsNothingWithoutMirrors) {
   for (const float value : predict(*model, cases, {row.begin(), row.end()})) EXPECT_EQ(value, 0);
 }
 
+TEST(KernelMethod, AnAsymmetryThatNothingIsKnownOfIsZeroWithoutSpread) {
+  const field::CaseSet cases = test::toy_cases(2);
+  const field::FieldData data = test::toy_field(cases);
+  const auto spread_of = [&](const KernelOptions& options) {
+    const auto model = make_kernel_method(options)->fit(data, math::all_rows(2), {});
+    std::vector<std::int32_t> planes(cases.mesh.n_planes);
+    std::iota(planes.begin(), planes.end(), 0);
+    std::vector<float> values(cases.mesh.n_cells()), spread(values.size());
+    model::Workspace workspace;
+    const std::span<const double> inputs(cases.inputs.row(0).data(), cases.schema.size());
+    model->predict({.inputs = inputs, .planes = planes}, values, spread, workspace);
+    return *std::ranges::max_element(spread);
+  };
+
+  EXPECT_EQ(spread_of({.symmetric = false}), 0);
+  EXPECT_GT(spread_of({}), 0);
+}
+
 TEST(KernelMethod, WorksWithoutMirrors) {
   const field::CaseSet cases = test::toy_cases(30, false);
 

@@ -30,6 +30,7 @@ class RandomTrainer final : public networks::Trainer {
     n_validation = problem.validation_inputs.rows();
     n_columns = problem.train_targets.cols();
     n_units.push_back(h.n_units);
+    stopped_on.push_back(problem.validation_inputs);
     ++n_trained;
     n_gone_on += problem.start.size() > 0 ? 1 : 0;
     if (problem.start.size() > 0) start = problem.start;
@@ -45,6 +46,7 @@ class RandomTrainer final : public networks::Trainer {
   mutable Eigen::Index n_train = 0, n_validation = 0, n_columns = 0;
   mutable int n_trained = 0, n_gone_on = 0;
   mutable std::vector<int> n_units;
+  mutable std::vector<MatrixF> stopped_on;  // inputs
   mutable MatrixF start;
 };
 
@@ -154,6 +156,31 @@ TEST_F(Networks, EachBuildStopsOnCasesOfItsOwn) {
   EXPECT_EQ(trainer->n_validation, 2 * 8);
 }
 
+TEST_F(Networks, TheBestBuildIsOneOfErrorsOnTheSameCases) {
+  NetworkPlan plan;
+  plan.bands = {{.name = "all", .columns = {0, 1, 2, 3, 4, 5}, .mask = {}}};
+  plan.hyperparameters = {{{}}};
+  const auto stopping_cases = [&](const std::string& combine) {
+    networks::Settings settings;
+    settings.fit.builds = 3;
+    settings.fit.combine = combine;
+    NetworksMethod method(settings, trainer);
+    method.keep_plan(data.info.name, plan);
+    trainer->stopped_on.clear();
+    (void)method.fit(data, math::all_rows(20), {});
+    return trainer->stopped_on;
+  };
+
+  const auto of_best = stopping_cases("best"), of_mean = stopping_cases("mean");
+
+  ASSERT_EQ(of_best.size(), 3U);
+  EXPECT_EQ(of_best[0], of_best[1]);
+  EXPECT_EQ(of_best[0], of_best[2]);
+  ASSERT_EQ(of_mean.size(), 3U);
+  for (const auto& [a, b] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)})
+    EXPECT_NE(of_mean[static_cast<std::size_t>(a)], of_mean[static_cast<std::size_t>(b)]);
+}
+
 TEST_F(Networks, BuildsTakeNearlyBestHyperparametersInTurn) {
   networks::Settings settings;
   settings.fit.builds = 5;
@@ -210,6 +237,11 @@ TEST_F(Networks, TheirAsymmetryInFoldsIsTheKernels) {
     return domain.project(values, math::all_rows(20), 0, 1);
   };
   EXPECT_TRUE(symmetric(told_double).isApprox(symmetric(alone), 1e-5F)) << "and nothing else";
+  const MatrixF one_fold = method.predict_folds(data, folds, std::vector<std::size_t>{1}, {.known = &known});
+  for (std::size_t row = 0; row < 20; ++row) {
+    const bool asked = std::ranges::binary_search(folds[1], row);
+    EXPECT_EQ(one_fold.row(static_cast<Eigen::Index>(row)).norm() > 0, asked) << row;
+  }
 }
 
 TEST_F(Networks, AWarmStartGoesOnFromTheNetworkOfTheKnownCases) {
@@ -225,7 +257,7 @@ TEST_F(Networks, AWarmStartGoesOnFromTheNetworkOfTheKnownCases) {
             networks::parameters_of(networks_of(*before).parts().submodels.front().builds.front()));
 }
 
-TEST_F(Networks, CrossValidationOfAWarmStartHasSeenNeitherFoldNorNewCases) {
+TEST_F(Networks, NetworksInFoldsOfAWarmStartHaveSeenNeitherFoldNorNewCases) {
   const NetworksMethod method(small_settings(), trainer);
   const WarmStart warm{.parent = "p", .model = nullptr, .known = math::all_rows(16)};
   const auto known = load_grouped_folds(cases.loads, warm.known, 4);

@@ -386,7 +386,7 @@ TEST(UnfoldedModel, RefusesPartsThatDoNotFit) {
   EXPECT_ERROR(InputError, "4 orbits of columns, expected 3 and 7",
                UnfoldedModel(symmetric_inputs(), swap_fold(), make("pod_gp"), nullptr));
   EXPECT_ERROR(InputError, "found 0 inputs", UnfoldedModel(FeatureMap({}, 3), {}, make("pod_gp"), nullptr));
-  EXPECT_ERROR(InputError, "found 4 columns, expected 7",
+  EXPECT_ERROR(InputError, "found 3 inputs, 5 planes, 4 columns, expected 3 inputs, 5 planes, 7 columns",
                UnfoldedModel(symmetric_inputs(), {}, make("pod_gp"), pod_of("linear", 4)));
   io::TensorFile file;
   make("unfolded")->save(file, "m");

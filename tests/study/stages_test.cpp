@@ -155,7 +155,7 @@ std::map<std::string, Effect> effects() {
           {"search.dropout", {"[0.1, 0.2]", none}},
           {"search.regularise", {"true", from_search}},
           {"fit.builds", {"3", build + networks}},
-          {"fit.combine", {"best", networks}},
+          {"fit.combine", {"best", build + networks}},
           {"fit.max_epochs", {"2", build + networks}},
           {"fit.patience", {"2", build + networks}},
           {"networks.plane_encoding", {"index", from_search}},
@@ -164,7 +164,7 @@ std::map<std::string, Effect> effects() {
           {"networks.epoch_records", {"20", from_search}},
           {"networks.schedule", {"constant", from_search}},
           {"networks.mirrors", {"false", from_records}},
-          {"networks.average", {"true", networks}},
+          {"networks.average", {"true", none}},  // read with networks.mirrors=false only
           {"networks.relevance", {"none", from_search}},
           {"networks.transform", {"{ pressure = \"asinh\" }", from_records}},
           {"peers.methods", {"[\"linear\", \"nearest\"]", {"model auto", "model nearest"}}},

@@ -291,8 +291,11 @@ std::unique_ptr<model::FieldModel> KernelMethod::fit(const field::FieldData& dat
                                                      const FitContext& context) const {
   FieldParts field(data, cases, context, options_.scale);
   const VectorXd mean = options_.symmetric ? field.whole_mean() : VectorXd::Zero(data.values.cols());
-  if (field.nothing_to_learn())
-    return mean_model(data, mean, math::column_moments(data.values, cases).deviation);
+  if (field.nothing_to_learn()) {
+    auto deviation = math::column_moments(data.values, cases).deviation;
+    if (!options_.symmetric) deviation.setZero();  // it is the symmetric part's
+    return mean_model(data, mean, deviation);
+  }
 
   if (field.scale) context.log->detail("kernel: " + data.info.name + " is learned over " + field.scale->name);
   std::vector<ZonePart> parts;

@@ -250,10 +250,12 @@ std::vector<model::Submodel> NetworksMethod::build(const field::FieldData& data,
       [&](std::size_t unit, int) {
         const std::size_t i_band = unit / n, i_build = unit % n;
         const auto& band = plan.bands[i_band];
+        // The best build is one of errors on the same cases.
+        const std::size_t i_fold = own.fit.combine == "best" ? 0 : i_build;
         networks::BuildStage stage{
             .name = field + "-" + band.name + "-" + std::to_string(i_build),
             .records = &records.planned(),
-            .number = {i_build, static_cast<std::size_t>(own.fit.builds)},
+            .number = {i_fold, static_cast<std::size_t>(own.fit.builds)},
             .band = band,
             .hyperparameters = plan.hyperparameters[i_band][i_build % plan.hyperparameters[i_band].size()],
             .budget = {own.fit.max_epochs, own.fit.patience, own.epoch_records, own.anneal},
@@ -289,7 +291,7 @@ std::unique_ptr<model::FieldModel> NetworksMethod::assemble(const field::FieldDa
       .combination = own.fit.combine == "best" ? model::Combination::best : model::Combination::mean};
   auto networks = std::make_unique<model::BandedNetworks>(std::move(parts));
   const auto& shared = *data.cases;
-  if (!own.average || own.symmetric || shared.mirrors.empty()) return networks;
+  if (!own.average || shared.mirrors.empty()) return networks;
   const auto group = field::symmetry_group(shared.mirrors, shared.schema.size(), shared.mesh.n_cells());
   return std::make_unique<model::MirrorModel>(std::move(networks), group, data.info.parity,
                                               shared.mesh.n_planes);
@@ -314,7 +316,12 @@ MatrixF NetworksMethod::asymmetry_in_folds(const field::FieldData& data, const F
                                            const FitContext& context) const {
   if (context.known == nullptr || context.known->key != kernel_->key(data.info.name))
     return asymmetry_->predict_folds(data, folds, wanted, context);
-  const MatrixF& whole = context.known->values;
+  MatrixF whole = MatrixF::Zero(data.values.rows(), data.values.cols());
+  for (const auto i_fold : wanted)
+    for (const auto row : folds[i_fold]) {
+      const auto place = static_cast<Eigen::Index>(row);
+      whole.row(place) = context.known->values.row(place);
+    }
   const FundamentalDomain domain(*data.cases, data.info.parity, symmetry_classes(data.cases->mirrors.size()));
   const auto rows = math::all_rows(static_cast<std::size_t>(whole.rows()));
   MatrixF symmetric = MatrixF::Zero(whole.rows(), whole.cols());
@@ -341,7 +348,7 @@ MatrixF NetworksMethod::predict_folds(const field::FieldData& data, const Folds&
         const std::size_t i_fold = wanted[i];
         const auto others = common(known, rows_without(folds, i_fold));
         auto within = cold;
-        within.n_threads = within_fold;
+        within.n_threads = std::max(1, context.n_threads / static_cast<int>(wanted.size()));
         const Learned learned(data, own.symmetric, others, within);
         const Records records(learned.data(), others, own, cold);
         auto submodels = build(learned.data(), found, records, n_builds, cold, within_fold);

@@ -56,7 +56,7 @@ FieldSettings settings_of_field(const Settings& settings, const std::string& fie
           .fit = settings.fit,
           .epoch_records = settings.networks.epoch_records,
           .anneal = settings.networks.schedule == "cosine",
-          .average = settings.networks.average && settings.symmetry.enabled,
+          .average = settings.networks.average && !settings.networks.mirrors && settings.symmetry.enabled,
           .symmetric = settings.networks.mirrors && settings.symmetry.enabled};
 }
 

@@ -137,7 +137,8 @@ io::SettingsTable<Settings> make_table() {
       "search.regularise", "search weight decay and dropout too",
       [](auto& s) -> auto& { return s.search.regularise; });
   t.whole(
-      "fit.builds", "builds of every submodel", [](auto& s) -> auto& { return s.fit.builds; }, 1, 100);
+      "fit.builds", "builds of every submodel; they take nearly best hyperparameters in turn",
+      [](auto& s) -> auto& { return s.fit.builds; }, 1, 100);
   t.word("fit.combine", "what a submodel answers with", [](auto& s) -> auto& { return s.fit.combine; },
          {"mean", "best"});
   t.whole(
@@ -158,7 +159,7 @@ io::SettingsTable<Settings> make_table() {
          [](auto& s) -> auto& { return s.networks.schedule; }, {"cosine", "constant"});
   t.flag(
       "networks.mirrors",
-      "networks learn the symmetric part of a field over its scale, once for all mirror images",
+      "networks learn the symmetric part of a field over its scale, POD + MLP from mirror images too",
       [](auto& s) -> auto& { return s.networks.mirrors; });
   t.flag(
       "networks.average", "average what networks answer over mirror images, with networks.mirrors=false",

@@ -45,8 +45,8 @@ class NetworksMethod final : public Method {
                                                        std::span<const std::size_t> cases,
                                                        const FitContext& context) const override;
   /// Bands and hyperparameters are those of all cases in the folds; the networks of a fold have not seen its
-  /// cases. Not all builds of a band. The asymmetry is taken from what the kernel method said of the folds,
-  /// where that is known.
+  /// cases. At most three builds a band. The asymmetry is taken from what the kernel method said of the
+  /// folds, where that is known.
   [[nodiscard]] MatrixF predict_folds(const field::FieldData& data, const Folds& folds,
                                       std::span<const std::size_t> wanted,
                                       const FitContext& context) const override;

@@ -1,5 +1,6 @@
 #pragma once
-// Field models made of field models: a weighted sum, a multiple, and the average over mirror images.
+// Field models made of field models: a weighted sum, a multiple, the average over mirror images, and a field
+// from its symmetric part.
 
 #include <memory>
 #include <string>

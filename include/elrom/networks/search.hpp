@@ -100,8 +100,9 @@ using SearchContext = SearchContextOf<Hyperparameters>;
 template <class H>
 struct SearchResultOf {
   H best;
-  /// The best and whatever comes within a tenth of its error, in the order of their keys. Which of these is
-  /// the best is chance; the set of them stands where data change in a last bit.
+  /// The best and whatever comes within a tenth of its error, of those confirmed where some are, in the order
+  /// of their keys. Which of these is the best is chance; the set of them stands where data change in a last
+  /// bit.
   std::vector<H> near_best;
   double validation_mse = 0;       ///< mean over the seeds that confirmed it, or of its one trial
   std::vector<TrialOf<H>> trials;  ///< all, in order; confirmations (i_seed > 0) at the end

@@ -36,7 +36,7 @@ struct FieldSettings {
   int epoch_records = 0;
   bool anneal = false;
   bool average = false;
-  bool symmetric = false;  ///< on one column of each orbit
+  bool symmetric = false;  ///< learn the symmetric part over its scale, on one column of each orbit
 };
 /// What a stage would not read (the closed-form screen's settings beside
 /// networks, ranges that are not searched) is at its default.
