@@ -7,7 +7,6 @@
 #include "elrom/base/error.hpp"
 #include "elrom/base/members.hpp"
 #include "elrom/base/parallel.hpp"
-#include "elrom/math/statistics.hpp"
 #include "elrom/methods/cross_validation.hpp"
 #include "elrom/methods/kernel_method.hpp"
 #include "elrom/model/composite_models.hpp"
@@ -316,17 +315,18 @@ MatrixF NetworksMethod::asymmetry_in_folds(const field::FieldData& data, const F
                                            const FitContext& context) const {
   if (context.known == nullptr || context.known->key != kernel_->key(data.info.name))
     return asymmetry_->predict_folds(data, folds, wanted, context);
-  MatrixF whole = MatrixF::Zero(data.values.rows(), data.values.cols());
-  for (const auto i_fold : wanted)
-    for (const auto row : folds[i_fold]) {
-      const auto place = static_cast<Eigen::Index>(row);
-      whole.row(place) = context.known->values.row(place);
-    }
+  const MatrixF& whole = context.known->values;
+  std::vector<std::size_t> rows;
+  for (const auto i_fold : wanted) rows.insert(rows.end(), folds[i_fold].begin(), folds[i_fold].end());
   const FundamentalDomain domain(*data.cases, data.info.parity, symmetry_classes(data.cases->mirrors.size()));
-  const auto rows = math::all_rows(static_cast<std::size_t>(whole.rows()));
-  MatrixF symmetric = MatrixF::Zero(whole.rows(), whole.cols());
+  MatrixF symmetric = MatrixF::Zero(static_cast<Eigen::Index>(rows.size()), whole.cols());
   domain.add(0, domain.project(whole, rows, 0, context.n_threads), symmetric, context.n_threads);
-  return whole - symmetric;
+  MatrixF asymmetry = MatrixF::Zero(whole.rows(), whole.cols());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(rows[i]);
+    asymmetry.row(row) = whole.row(row) - symmetric.row(static_cast<Eigen::Index>(i));
+  }
+  return asymmetry;
 }
 
 MatrixF NetworksMethod::predict_folds(const field::FieldData& data, const Folds& folds,

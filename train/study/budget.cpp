@@ -150,7 +150,8 @@ std::vector<BudgetLevel> budget_levels(const Settings& settings, const CostModel
       {fmt::format("networks too, effort {}", settings.effort), settings, levels.back().seconds * multiple,
        model.networks_had_no_part
            ? "they had no part in the present model, which tried them: expect nothing of it"
-           : "on the shipped cases they cost as much as the rest or more, and lower the mean error by less than 1 %"});
+           : "on the shipped cases they cost as much as the rest or more, and lower the mean error by less than "
+             "1 %"});
   return levels;
 }
 
