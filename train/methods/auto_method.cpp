@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <numeric>
 
 #include "elrom/base/error.hpp"
 #include "elrom/base/text.hpp"
@@ -348,7 +349,9 @@ class Contest {
 }  // namespace
 
 double CandidateScore::mean_weight() const {
-  return weights.empty() ? 0 : VectorXd::Map(weights.data(), static_cast<Index>(weights.size())).mean();
+  // One after the other: the order of a vectorised sum depends on where the heap put the weights.
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  return weights.empty() ? 0 : sum / static_cast<double>(weights.size());
 }
 
 std::vector<double> blend_weights(const MatrixXd& error_gram) {
